@@ -22,7 +22,7 @@
 namespace odomcalib::calib {
 namespace {
 
-/// What is missing from the fitted model, where that is to be looked for.
+/// Terms that are missing from the fitted model, where they are to be looked for.
 selection::SearchResult select_terms(const estimation::Fit& fit, bool is_wanted,
                                      const selection::RuleSet& rules, const Progress& progress) {
   selection::SearchResult found;
@@ -34,8 +34,8 @@ selection::SearchResult select_terms(const estimation::Fit& fit, bool is_wanted,
   return without_idle_delay({fit.dataset.data, fit.dataset.fixed()}, std::move(found));
 }
 
-/// What makes any fit of the recordings meaningless, as far as it shows before scans are matched from where
-/// the counts say they are.
+/// The error that makes any fit of the recordings meaningless, as far as it shows before scans are matched
+/// from where the counts say they are.
 std::optional<Error> contradiction(const ingest::Recordings& recordings, bool same_robot) {
   if (auto error = ingest::two_robots(recordings.view(), same_robot)) return error;
   for (const Recording& recording : recordings.view())
@@ -56,8 +56,8 @@ Solution calibrate(measurement::Dataset opened, const terms::Request& request, c
   estimation::Fit fit = settle(std::move(rough), start.value(), how);
   fit = selection::mount_reference(std::move(fit), how);
   fit = selection::align_clocks(std::move(fit), request, how);
-  fit = selection::even_out_scans(std::move(fit), how);
-  fit = selection::let_scans_sweep(std::move(fit), request, how);
+  fit = selection::choose_scan_stamps(std::move(fit), how);
+  fit = selection::choose_sweep_timing(std::move(fit), request, how);
   auto [corrected, lidar, placement] = selection::correct_lidar(std::move(fit), request, how);
   placement = selection::placement_of(corrected, std::move(placement), progress);
   fit = selection::locate(std::move(corrected), placement);

@@ -21,11 +21,11 @@ struct SolveOptions {
   std::vector<std::string> effects = {"auto"};
   /// Recordings that state different robot_id are of one robot all the same.
   bool same_robot = false;
-  /// Of several lidars that one topic carries, the one whose scans are used; empty: that with most.
+  /// The lidar whose scans are used, of several that one topic carries; empty: that with most.
   std::string sensor = {};
   /// All of them but in an ablation.
   selection::RuleSet rules = {};
-  /// Of the reference; without one a lidar's data sheet has to do.
+  /// Scale of the reference; without one a lidar's data sheet has to do.
   std::optional<Scale> scale = std::nullopt;
   /// Outliers of the closed form; the joint estimator weighs its own.
   classical::ClosedFormOptions cuts = {};

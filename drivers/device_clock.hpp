@@ -21,9 +21,9 @@ class DeviceClock {
   /// @return the stamped instant on the caller's clock, never later than arrival
   double to_host(std::uint64_t count, double arrival);
 
-  /// Of the last stamp, s since the device's zero, without the jumps where its counter starts again.
+  /// Time of the last stamp, s since the device's zero, without the jumps where its counter starts again.
   [[nodiscard]] double device() const { return device_s_; }
-  /// What to_host adds to that, s.
+  /// Offset that to_host adds to that, s.
   [[nodiscard]] double offset() const { return offset_; }
 
   void reset();

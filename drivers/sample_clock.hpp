@@ -31,7 +31,7 @@ class SampleClock {
   bool running_ = false;
   double t_ = 0.0;     // s, envelope at the last packet
   double rate_ = 1.0;  // measured / nominal
-  // Of the window in progress: nominal seconds in it, and the least lateness seen.
+  // Window in progress: nominal seconds in it, and the least lateness seen.
   double window_ = 0.0, least_late_ = 0.0;
 };
 

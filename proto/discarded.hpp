@@ -1,5 +1,4 @@
-// What was left out of a recording, and what was put right or chosen in it: evidence that every stage hands
-// on.
+// Parts of a recording that were left out, put right or chosen: evidence that every stage hands on.
 #pragma once
 
 #include <algorithm>
@@ -34,7 +33,7 @@ inline void count_one(Discarded& discarded, double t) {
   include(discarded, t);
 }
 
-/// What is called so was put right by a measurement, not by what the recording states.
+/// Name of a repair that rests on a measurement, not on what the recording states.
 inline constexpr const char* kRepairedClock = "clock";
 
 /// Something that was put right, or taken where there were several.

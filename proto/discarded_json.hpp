@@ -1,4 +1,4 @@
-// What was left out or put right, as every document of ours has it.
+// Left-out and repaired parts of a recording, as every document of ours has them.
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>

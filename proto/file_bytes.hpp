@@ -20,7 +20,7 @@ std::string sha256_hex(std::string_view bytes);
 /// True when the bytes begin with the gzip magic.
 bool is_gzip(std::string_view bytes);
 
-/// What could be unpacked; a damaged or cut-off end leaves what came before it.
+/// Bytes that could be unpacked; a damaged or cut-off end leaves those before it.
 struct Unpacked {
   std::string bytes;
   bool whole = true;

@@ -1,4 +1,4 @@
-// What is measured on a robot, in SI units and radians (REP-103): the value types that every folder shares.
+// Measurements on a robot, in SI units and radians (REP-103): the value types that every folder shares.
 #pragma once
 
 #include <array>

@@ -1,4 +1,4 @@
-// Which of the known words somebody meant.
+// The known word that somebody meant.
 #pragma once
 
 #include <optional>

@@ -20,7 +20,7 @@ struct UnpackLimit {
   std::size_t most = kMost;
   bool by_size = true;  ///< a small file may unpack to less
 
-  /// What somebody who trusts a file allows.
+  /// Limit that somebody who trusts a file allows.
   static UnpackLimit allowed(std::size_t bytes) { return {bytes, false}; }
 
   /// Bytes that so many packed ones may become.

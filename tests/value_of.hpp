@@ -1,4 +1,4 @@
-// What a test goes on with, or its end.
+// The value that a test goes on with, or the end of the test.
 #pragma once
 
 #include <stdexcept>

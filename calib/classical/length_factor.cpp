@@ -13,7 +13,7 @@ namespace {
 
 std::string number(double value) { return math::significant(value, 3); }
 
-/// What has to be typed: a factor of a unit, counts.
+/// The number to type: a factor of a unit, counts.
 std::string exact(double value) { return math::significant(value, 6); }
 
 bool is_one(double ratio) { return ratio > 1.0 / settings::kSameLength && ratio < settings::kSameLength; }

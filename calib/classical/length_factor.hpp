@@ -15,12 +15,12 @@ struct LengthRatios {
   double left = 1.0, right = 1.0, track = 1.0;
 };
 
-/// What was found and what mends it.
+/// A cause that was found and its remedy.
 struct Cause {
   std::string what, remedy;
 };
 
-/// What the ratios were measured with.
+/// Robot, motion source and reference that the ratios were measured with.
 struct Measured {
   RobotDescription robot;
   MotionSource motion = MotionSource::ticks;  ///< what told the motion of the wheels

@@ -1,4 +1,4 @@
-// Which motion a drive lacks, for advice that does not ask for what was driven.
+// The motion that a drive lacks, for advice that does not ask for what was driven.
 #pragma once
 
 #include <optional>
@@ -9,8 +9,8 @@
 
 namespace odomcalib::calib::classical {
 
-/// What to record: the lines or the turns that are hardly there, or both where the wheels always turned in
-/// the same proportion. Nothing where no motion is missing.
+/// The motion to record: the lines or the turns that are hardly there, or both where the wheels always turned
+/// in the same proportion. Nothing where no motion is missing.
 std::optional<std::string> missing_motion(std::span<const wheels::WheelMotion> motions);
 
 /// The remedy of an estimate that the motion does not determine: to record what is missing, or more of each.

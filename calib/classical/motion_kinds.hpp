@@ -1,5 +1,5 @@
-// What a drive holds of each kind of motion, and what that is enough for: by nominal dimensions, before
-// anything is measured.
+// Amount of each kind of motion in a drive, and what it is enough for: by nominal dimensions, before anything
+// is measured.
 #pragma once
 
 #include <cstddef>
@@ -32,7 +32,7 @@ MotionKinds motion_kinds(const wheels::WheelTrack& track, const wheels::BasePara
 
 enum class Supply { missing, little, enough };
 
-/// What one or some of the parameters need, and what is there of it.
+/// The motion that one or some of the parameters need, and how much of it there is.
 struct ParameterSupply {
   std::string parameters;                   ///< names as in calibration files, "a, b"
   std::string shown_by;                     ///< the motion

@@ -14,7 +14,7 @@ constexpr double kSmallStep = 1e-12;
 
 /// E_d, E_b, and by how much the lidar sits elsewhere than stated: m, m, rad in the frame of the base.
 using Unknowns = Eigen::Matrix<double, 5, 1>;
-/// Of each whitened value; two ends and what is known of the lidar's place.
+/// Whitened residuals: two ends and what is known of the lidar's place.
 using Misses = Eigen::Matrix<double, 9, 1>;
 
 Error refused(const std::string& what, const std::string& where, const std::string& remedy) {

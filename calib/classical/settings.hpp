@@ -40,7 +40,7 @@ inline constexpr double kMostYaw_rad = 0.5;
 inline constexpr double kLeastTurn_rad = math::kPi / 2.0;
 /// Share of a side; a drive that ends farther from its start is no square. Chosen.
 inline constexpr double kFarEnd = 0.5;
-/// Of the common scale of diameters that a straight metre gave, by either reference: relative. Chosen.
+/// Error of the common scale of diameters that a straight metre gave, by either reference: relative. Chosen.
 inline constexpr double kDiametersOfStraight = 3e-4;
 
 // --- Missing motion --------------------------------------------------------------------------------------

@@ -17,14 +17,14 @@
 namespace odomcalib::calib::classical {
 namespace {
 
-/// What may be wrong between the wheels and the counts, and with the lidar.
+/// Possible faults between the wheels and the counts, and with the lidar.
 struct Wires {
   bool exchanged = false;  ///< before any sign is turned
   bool left_inverted = false, right_inverted = false;
   bool lidar_mirrored = false;
 };
 
-/// What would have been recorded with everything in its place.
+/// The motion that would have been recorded with everything in its place.
 wheels::WheelMotion put_right(wheels::WheelMotion motion, const Wires& wires) {
   if (wires.exchanged) std::swap(motion.left, motion.right);
   if (wires.left_inverted) motion.left = -motion.left;
@@ -124,7 +124,7 @@ std::string text_of(const Explanation& one, bool of_base) {
   return out;
 }
 
-/// Of rotation = right gain * right - left gain * left.
+/// Rotation left over by rotation = right gain * right - left gain * left.
 double rotation_left(std::span<const wheels::WheelMotion> motions, double left_gain, double right_gain) {
   double sum = 0.0;
   for (const wheels::WheelMotion& m : motions)

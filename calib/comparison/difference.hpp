@@ -11,7 +11,7 @@
 
 namespace odomcalib::calib::comparison {
 
-/// Of one parameter, from an earlier calibration to a later one; SI units.
+/// Change of one parameter, from an earlier calibration to a later one; SI units.
 struct Change {
   std::string name, unit;
   double before = 0.0, after = 0.0;
@@ -38,7 +38,7 @@ struct Difference {
   Metre metre = Metre::unstated;
   std::vector<std::string> came, went;  ///< names of effects
   std::vector<Change> effects;          ///< parameters of the effects that are in both: "effect: parameter"
-  /// What odometry with the earlier values would read too much now, if the later ones are true: m in a metre
+  /// Excess in the readings of odometry with the earlier values, if the later ones are true: m in a metre
   /// straight, rad in a full turn. None where a length was not estimated.
   std::optional<Estimate> metre_error, turn_error;
   /// The joint test or a single parameter says so.

@@ -1,4 +1,4 @@
-// Which robot of several needs somebody first.
+// The robot of several that needs somebody first.
 #pragma once
 
 #include <optional>
@@ -19,7 +19,7 @@ enum class Urgency {
 /// As texts and JSON have it.
 const char* name_of(Urgency urgency);
 
-/// Of one robot.
+/// Standing of one robot.
 struct RobotStanding {
   Urgency urgency = Urgency::none;
   std::optional<Difference> since_last;  ///< between the newest two that were not refused

@@ -17,7 +17,7 @@ struct ParameterTrend {
   std::optional<Line> line;  ///< none where all x are alike
 };
 
-/// Of the parameters that all of them have estimated; the mean diameter first.
+/// Trends of the parameters that all calibrations have estimated; the mean diameter first.
 /// @param x of each calibration
 std::vector<ParameterTrend> parameter_trends(std::span<const Calibration* const> calibrations,
                                              std::span<const double> x);

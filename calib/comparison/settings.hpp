@@ -7,7 +7,7 @@ namespace odomcalib::calib::comparison::settings {
 /// Level of the joint test of "nothing changed", of the single parameters together (Holm), and of a slope.
 /// Chosen: one false alarm in a hundred comparisons.
 inline constexpr double kChangedLevel = 0.01;
-/// Of intervals. Chosen: what reports state everywhere.
+/// Confidence level of intervals. Chosen: what reports state everywhere.
 inline constexpr double kIntervalLevel = 0.95;
 /// Share of the largest eigenvalue of a correlation matrix below which a direction counts as not measured:
 /// rounding. Chosen.

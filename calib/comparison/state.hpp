@@ -1,4 +1,4 @@
-// What a calibration says of the state of its robot: values with their covariance, against one metre.
+// State of a robot by its calibration: values with their covariance, against one metre.
 #pragma once
 
 #include <Eigen/Core>
@@ -29,7 +29,7 @@ struct State {
 /// the file does not name a parameter its deviation stands alone.
 State state_of(const Calibration& calibration);
 
-/// What several calibrations have in common of the metre that their lengths are measured with.
+/// Relation between the metres that the lengths of several calibrations are measured with.
 enum class Metre {
   unstated,  ///< no file states one: it is taken to be the same
   common,    ///< the same in all: its error is in all values alike, and cancels
@@ -37,7 +37,7 @@ enum class Metre {
 };
 Metre metre_of(std::span<const State> states);
 
-/// What they have in common, with the errors of their metres where these are not the same.
+/// The parameters that they have in common, with the errors of their metres where these are not the same.
 std::vector<State> comparable(std::vector<State> states);
 
 struct Estimate {

@@ -19,8 +19,8 @@ namespace {
 /// Rotation of the wheels in each pair's interval, seen with a delay.
 using Turns = std::vector<Eigen::Vector2d>;
 
-/// What a delay leaves of the measured rotation of each pair, for delays on a grid: squares in units of the
-/// noise, bounded, added up from the first pair.
+/// Residual of the measured rotation of each pair, for delays on a grid: squares in units of the noise,
+/// bounded, added up from the first pair.
 class Costs {
  public:
   Costs(const measurement::FitData& one, const std::vector<double>& delays)

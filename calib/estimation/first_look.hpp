@@ -16,8 +16,8 @@ std::optional<Error> first_look(const Recording& recording);
 /// Whether the counts of a wheel never fall, although it turned: the sign of encoders without a direction.
 bool never_counts_down(const Recording& recording);
 
-/// That counts have no direction, where the reference turns as counts with one would have it; nullopt where
-/// the robot only drove ahead. Matches scans only if a wheel never counts down.
+/// The error that counts have no direction, where the reference turns as counts with one would have it;
+/// nullopt where the robot only drove ahead. Matches scans only if a wheel never counts down.
 std::optional<Error> counts_without_direction(const Recording& recording);
 
 }  // namespace odomcalib::calib::estimation

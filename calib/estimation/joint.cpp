@@ -97,7 +97,7 @@ NormalSystem normal_system(Eigen::MatrixXd jacobian, const std::vector<bool>& fi
   return system;
 }
 
-/// Of the parameters, those of the effects behind those of the base.
+/// Prior information of the parameters, those of the effects behind those of the base.
 Eigen::MatrixXd prior_information(Eigen::Index parameters, const vehicle::EffectList& effects) {
   if (parameters < vehicle::kBaseCount + static_cast<Eigen::Index>(vehicle::count_parameters(effects)))
     throw std::invalid_argument("a fit needs a start of the base and of each effect");

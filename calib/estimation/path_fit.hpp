@@ -15,7 +15,7 @@
 
 namespace odomcalib::calib::estimation {
 
-/// What disturbs one recording.
+/// Noise that disturbs one recording.
 struct PathNoise {
   double place = 1.0;                                  ///< true over stated deviation of a scan's place
   double forward = settings::kStartPathNoise_m;        ///< m per square root of a metre rolled

@@ -21,7 +21,7 @@ inline constexpr std::size_t kFewestMotions = 20;
 /// second they agree. Measured: sound simulated recordings have 0.93 to 0.99, clocks apart by seconds 0 to
 /// 0.4.
 inline constexpr double kContradicts = 0.75, kAgrees = 0.9;
-/// Of the unexplained rotation, what a mistake put right may leave. Chosen: no small gain names a mistake.
+/// Share of unexplained rotation that a mistake put right may leave. Chosen: no small gain names a mistake.
 inline constexpr double kLeftOver = 0.4;
 /// s, step and reach of the search for clocks that were set apart. Chosen: people start recorders within a
 /// minute of each other.
@@ -71,7 +71,7 @@ inline constexpr double kNamedComponent = 0.3;
 
 // --- Path fit --------------------------------------------------------------------------------------------
 
-/// Of noise and parameters. Chosen.
+/// Rounds of noise and parameters. Chosen.
 inline constexpr int kPathRounds = 3;
 /// Gauss-Newton steps a round. Chosen.
 inline constexpr int kPathSteps = 3;

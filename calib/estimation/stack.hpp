@@ -28,7 +28,7 @@ Stack make_stack(std::span<const measurement::FitData> data, const vehicle::Effe
 Eigen::VectorXd stacked_residual(std::span<const measurement::FitData> data,
                                  const vehicle::EffectList& effects, const Eigen::VectorXd& p);
 
-/// Of recording d.
+/// Residuals of recording d.
 std::vector<Eigen::Vector3d> residuals_of(const Stack& stack, std::size_t d);
 std::span<const measurement::PairState> states_of(const Stack& stack, std::size_t d);
 measurement::Whitener whitener_of(std::span<const measurement::FitData> data, const Stack& stack,

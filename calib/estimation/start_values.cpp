@@ -69,7 +69,7 @@ std::pair<std::vector<measurement::FitData>, std::vector<measurement::FitData>> 
   return both;
 }
 
-/// Of the pairs, s.
+/// Mean time of the pairs, s.
 double mean_time(std::span<const measurement::FitData> data) {
   double sum = 0.0, count = 0.0;
   for (const measurement::FitData& one : data)
@@ -96,7 +96,7 @@ vehicle::VehicleModel with_start_values(const vehicle::EffectList& effects,
   return {effects, parameters};
 }
 
-/// Of each recording alone first: one with exchanged wires beside sound ones is outvoted.
+/// Checks each recording alone first: one with exchanged wires beside sound ones is outvoted.
 std::optional<Error> check_signs(const measurement::Dataset& rough, double delay) {
   const std::span<const measurement::FitData> data(rough.data);
   const RobotDescription& robot = rough.recordings.front().robot;

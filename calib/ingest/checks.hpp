@@ -1,5 +1,5 @@
-// What can be wrong with a recording, by the form that tells it: one table. A row is a fault, a column a
-// form, and each cell says who tells or mends it, or why that form cannot have it.
+// Possible faults of a recording, by the form of its data: one table. A row is a fault, a column a form, and
+// each cell says who reports or mends it, or why that form cannot have it.
 #pragma once
 
 #include <array>
@@ -13,7 +13,7 @@ namespace odomcalib::calib::ingest {
 
 using Check = std::optional<Error> (*)(const Recording&);
 
-/// What becomes of a fault.
+/// Treatment of a fault.
 enum class Answer {
   told,      ///< refused by its name before anything is measured
   mended,    ///< put right, and said so

@@ -12,7 +12,7 @@
 namespace odomcalib::calib::ingest {
 namespace {
 
-/// Of an index, over long stretches.
+/// Period of an index, over long stretches.
 double period_of(const std::vector<double>& stamps, const std::vector<double>& index) {
   const std::size_t length = std::min(settings::kPeriodSamples, stamps.size() / 3);
   std::vector<double> slopes;
@@ -78,7 +78,7 @@ double middle_of(const std::vector<double>& values) {
   return sum / count;
 }
 
-/// Of up to kMiddleReach samples on either side, as many on both.
+/// Running middle of up to kMiddleReach samples on either side, as many on both.
 std::vector<double> running_middle(const std::vector<double>& values) {
   std::vector<double> middles;
   for (std::size_t k = 0; k < values.size(); ++k) {
@@ -123,7 +123,7 @@ bool has_gap(const std::vector<double>& times, std::size_t from, std::size_t to)
 
 /// Least squares with what lies beyond `limit` of the line of share `near` cut down to it (Huber, Ann. Math.
 /// Stat. 35, 1964).
-StampContest::Share StampContest::share(double limit, double near) const {
+StampComparison::Share StampComparison::share(double limit, double near) const {
   double product = 0.0, square = 0.0, variance = 0.0;
   const auto weight_of = [&](const Error& e) {
     const double residual = std::abs(e.given - near * e.difference);
@@ -140,14 +140,14 @@ StampContest::Share StampContest::share(double limit, double near) const {
   return {value, std::sqrt(variance) / square};
 }
 
-double StampContest::spread(double share) const {
+double StampComparison::spread(double share) const {
   std::vector<double> residuals;
   residuals.reserve(errors_.size());
   for (const Error& e : errors_) residuals.push_back(e.given - share * e.difference);
   return math::deviation_about(0.0, std::move(residuals));
 }
 
-bool StampContest::is_for_even() const {
+bool StampComparison::even_is_better() const {
   if (errors_.empty()) return false;
   Share found{0.5, 0.0};
   for (int round = 0; round < settings::kContestRounds; ++round)

@@ -14,7 +14,7 @@ struct EvenStamps {
 
 /// Spreads stamps evenly: index times period, and a running robust mean of what is left, which follows a
 /// clock that wanders and keeps lost samples and pauses as the steps they are. Late by the mean delay.
-/// Whether the device really sampled so, stamps alone do not show: see StampContest.
+/// Whether the device really sampled so, stamps alone do not show: see StampComparison.
 /// @param stamps s, in time order
 /// @return nothing when there are fewer than 50, or when they are even to 0.3 ms
 std::optional<EvenStamps> even_stamps(const std::vector<double>& stamps);
@@ -42,13 +42,13 @@ bool has_gap(const std::vector<double>& times, std::size_t from, std::size_t to)
 /// right ones have nothing to do with it: the share of the difference d = given - even that is found in the
 /// errors with the given stamps, by robust regression, is one when the even ones are right and zero when they
 /// are not.
-class StampContest {
+class StampComparison {
  public:
   /// @param given, even errors with either, in units of their deviation
   void add(double given, double even) { errors_.push_back({given, given - even}); }
 
   /// Whether the share exceeds one half by three standard deviations.
-  [[nodiscard]] bool is_for_even() const;
+  [[nodiscard]] bool even_is_better() const;
 
  private:
   struct Error {

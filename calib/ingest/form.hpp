@@ -25,7 +25,7 @@ Form motion_of(const Recording& recording);
 /// use that form.
 std::vector<double> stamps_of(const Recording& recording, Form form);
 
-/// What of that form was left out for this reason.
+/// Number of samples of that form that were left out for this reason.
 std::size_t left_out(const Recording& recording, Form form, const char* reason);
 
 }  // namespace odomcalib::calib::ingest

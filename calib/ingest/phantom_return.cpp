@@ -33,7 +33,7 @@ std::vector<Reading> readings_of(const std::vector<Scan>& scans, std::size_t fro
   return distinct;
 }
 
-/// Of the ten values next to one, five on either side.
+/// Usual count of the ten values next to one, five on either side.
 double usual_count(const std::vector<Reading>& readings, std::size_t place) {
   std::vector<double> counts{1.0};
   for (std::size_t k = place - std::min(place, settings::kPhantomBeside);

@@ -1,5 +1,5 @@
-// What common drivers do to scans, and what can be undone without a measurement: two lidars on one topic, a
-// turn in several messages, the same scan sent again, a head whose speed wanders.
+// Quirks of scans from common drivers, and what can be undone without a measurement: two lidars on one topic,
+// a turn in several messages, the same scan sent again, a head whose speed wanders.
 #pragma once
 
 #include <span>

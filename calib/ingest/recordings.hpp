@@ -13,8 +13,8 @@
 
 namespace odomcalib::calib::ingest {
 
-/// What is reported of stamps that were not believed: times that were replaced, the largest of all
-/// recordings, s; zero where those given are right.
+/// Report of stamps that were not believed: times that were replaced, the largest of all recordings, s; zero
+/// where those given are right.
 struct StampReport {
   double ticks = 0.0;  ///< jitter of stamps that were evened out
   double scans = 0.0;

@@ -128,7 +128,7 @@ inline constexpr std::size_t kFewestPoseSteps = 30;
 /// it. Derived: 0.64 where heading and way have nothing to do with each other; wheels slip by a few per cent,
 /// and a marker beside the middle of the axle moves sideways in turns.
 inline constexpr double kSidewaysAtLeast = 0.2, kSidewaysAtMost = 0.15;
-/// Of that share, what a mistake put right may leave. Chosen: no small gain names a mistake.
+/// Part of that share that a mistake put right may leave. Chosen: no small gain names a mistake.
 inline constexpr double kSidewaysMended = 0.3;
 /// Circular variance of the way against the heading as it is given, and how many times that against its
 /// negative: of a heading that turns the other way. Derived: 0.06 where lines turn by 10 degrees and back.

@@ -33,7 +33,7 @@ void let_sweep(Recording& recording) {
     scan.time_increment = turn * angle_between_beams(scan) / (2.0 * math::kPi);
 }
 
-/// Of a head that sweeps, s; negative where it turns clockwise.
+/// Time of one turn of a head that sweeps, s; negative where it turns clockwise.
 double turn_of_head(const Scan& scan) {
   const double step = angle_between_beams(scan);
   if (!(step > 0.0) || scan.ranges.size() < 2) return 0.0;

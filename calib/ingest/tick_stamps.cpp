@@ -12,7 +12,7 @@
 namespace odomcalib::calib::ingest {
 namespace {
 
-/// Of intervals between stamps, that of two samples which come at once, s; zero where most do anyway.
+/// Interval between stamps below which two samples come at once, s; zero where most do anyway.
 double at_once(const std::vector<TickSample>& ticks) {
   std::vector<double> intervals = math::differences_of(stamps_of(ticks));
   if (intervals.empty()) return 0.0;
@@ -39,7 +39,7 @@ std::vector<std::size_t> without_repeats(const std::vector<TickSample>& ticks) {
   return kept;
 }
 
-/// What was sent twice happened once.
+/// Counts that were sent twice happened once.
 std::vector<double> with_repeats(const std::vector<double>& times, const std::vector<std::size_t>& kept,
                                  std::size_t count) {
   std::vector<double> all;
@@ -50,15 +50,15 @@ std::vector<double> with_repeats(const std::vector<double>& times, const std::ve
   return all;
 }
 
-/// Of the value in the middle, from the line through its neighbours.
+/// Deviation of the value in the middle from the line through its neighbours.
 double misfit(std::span<const double> t, const std::array<double, 3>& value) {
   const double share = t[2] > t[0] ? (t[1] - t[0]) / (t[2] - t[0]) : 0.5;
   return value[1] - value[0] - share * (value[2] - value[0]);
 }
 
-/// Of the counts of one wheel; what stands still knows no time.
+/// Compares both sets of stamps by the counts of one wheel; a wheel that stands still knows no time.
 void compare(const std::vector<TickSample>& ticks, std::int64_t TickSample::*wheel,
-             const std::vector<double>& given, const std::vector<double>& even, StampContest& contest) {
+             const std::vector<double>& given, const std::vector<double>& even, StampComparison& contest) {
   for (std::size_t k = 0; k + 2 < ticks.size(); ++k) {
     if (ticks[k].segment != ticks[k + 2].segment || ticks[k].*wheel == ticks[k + 2].*wheel) continue;
     const auto since = [&](std::size_t j) { return static_cast<double>(ticks[j].*wheel - ticks[k].*wheel); };
@@ -77,10 +77,10 @@ std::optional<EvenStamps> even_ticks(const Recording& recording) {
   const std::vector<double> given = stamps_of(ticks);
   auto even = even_stamps(given);
   if (!even) return std::nullopt;
-  StampContest contest;
+  StampComparison contest;
   compare(ticks, &TickSample::left, given, even->t, contest);
   compare(ticks, &TickSample::right, given, even->t, contest);
-  if (!contest.is_for_even()) return std::nullopt;
+  if (!contest.even_is_better()) return std::nullopt;
   even->t = with_repeats(even->t, kept, recording.ticks.size());
   return even;
 }

@@ -30,7 +30,7 @@ Error wrong(const Recording& recording, const std::string& what, const std::stri
   return {ErrorCode::format, what, recording.name, remedy};
 }
 
-/// Of one lidar: scans of several come in between each other.
+/// Interval of one lidar's scans: those of several come in between each other.
 double interval_of_scans(const Recording& recording) {
   std::vector<double> times;
   for (const Scan& scan : recording.scans)

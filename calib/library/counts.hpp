@@ -7,7 +7,7 @@
 
 namespace odomcalib::calib::library {
 
-/// Which kind of motion a drive is told by.
+/// The data that a drive takes its motion from.
 enum class Motion { none, counts, angles, speeds };
 
 /// Cumulative counts of both wheels.
@@ -45,7 +45,7 @@ class AngleCounts {
 class SpeedCounts {
  public:
   explicit SpeedCounts(double counts_per_turn) : counts_per_turn_(counts_per_turn) {}
-  /// What has been counted at a stamp, when these speeds begin. Changes nothing until keep().
+  /// Counts at a stamp, when these speeds begin. Changes nothing until keep().
   /// @param speeds rad/s
   std::optional<Counts> at(double stamp, const std::array<double, 2>& speeds);
   void keep();

@@ -25,7 +25,7 @@ odometry::IncrementNoise noise_of(const Calibration& calibration) {
   return odometry::contact_noise_of(calibration).value_or(odometry::IncrementNoise{});
 }
 
-/// What the file says of one parameter of an effect; zero where it does not have it.
+/// Value of one parameter of an effect in the file; zero where it does not have it.
 double stated(const Calibration& calibration, const std::string& effect, const std::string& parameter) {
   for (const EffectResult& result : calibration.effects)
     for (const auto& [name, quantity] : result.parameters)
@@ -194,7 +194,7 @@ int Drive::take(double stamp, const Counts& counts) {
   if (admission == Admission::jump || admission == Admission::not_later) return rejected(admission, sample);
   if (admission == Admission::anew) {
     ++segment_;
-    // What speeds made of the time in between is none of the motion.
+    // The counts that speeds made of the time in between are none of the motion.
     if (motion_ != Motion::speeds) (void)add(gate_.begin());
   }
   return add(sample);

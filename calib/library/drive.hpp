@@ -48,7 +48,7 @@ class Drive {
   [[nodiscard]] const Calibration& calibration() const { return calibration_; }
   [[nodiscard]] double metres_per_count() const;
   [[nodiscard]] double clock_offset() const { return clock_offset_; }
-  /// What is reported in place of what was seen, along the ray and across.
+  /// Displacement of the reported end of a beam from the one that was seen, along the ray and across.
   [[nodiscard]] terms::BeamShift shift(const terms::Sighting& sighting) const;
   [[nodiscard]] const std::vector<EffectUse>& effects() const { return effects_; }
   [[nodiscard]] const char* problem() const { return problem_.data(); }

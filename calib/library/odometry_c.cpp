@@ -56,7 +56,7 @@ Refusal refusal_of(const Error& error) {
   return {other ? ODOMCALIB_OTHER_VERSION : ODOMCALIB_NOT_A_CALIBRATION, error.text()};
 }
 
-/// What odometry divides by, or multiplies with.
+/// Checks the values that odometry divides by, or multiplies with.
 std::optional<Refusal> unusable(const Calibration& calibration, const std::string& where) {
   if (const auto member = non_finite_value(calibration))
     return Refusal{ODOMCALIB_NOT_A_CALIBRATION, where + ": \"" + *member + "\" has no finite value"};

@@ -1,4 +1,4 @@
-// Which samples of a running drive are taken in.
+// Selection of the samples of a running drive that are taken in.
 #pragma once
 
 #include <optional>

@@ -51,7 +51,7 @@ BearingOrder::BearingOrder(std::span<const Eigen::Vector2d> points) {
   places_.resize(shares + 1, static_cast<std::uint32_t>(entries_.size()));
 }
 
-/// Of the first entry that lies no nearer to the x axis.
+/// Place of the first entry that lies no nearer to the x axis.
 std::size_t BearingOrder::place_of(double bearing) const {
   std::size_t place = places_[share_of(bearing, places_.size() - 1)];
   while (place < entries_.size() && entries_[place].bearing < bearing) ++place;

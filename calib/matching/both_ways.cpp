@@ -10,7 +10,7 @@
 namespace odomcalib::calib::matching {
 namespace {
 
-/// Of a motion's inverse, by the derivative of its x, y, yaw by those of the motion.
+/// Information of a motion's inverse, by the derivative of its x, y, yaw by those of the motion.
 Eigen::Matrix3d information_of_inverse(const math::Pose& motion, const Eigen::Matrix3d& information) {
   const double c = std::cos(motion.yaw), s = std::sin(motion.yaw);
   const math::Pose back = inverse(motion);

@@ -24,7 +24,7 @@ struct WallPoint {
   Eigen::Vector2d spread = Eigen::Vector2d::Zero();  ///< its beam times the deviation of the range, m
 };
 
-/// What is known of the motion beforehand.
+/// Prior knowledge of the motion.
 struct GuessPrior {
   math::Pose guess;
   Eigen::Matrix3d information = Eigen::Matrix3d::Zero();

@@ -86,7 +86,7 @@ class LikelihoodField {
   int pad_ = 0;  ///< cells before the first and after the last, so that scans may reach out and coarse cells
                  ///< begin there
   int width_ = 0, height_ = 0;
-  /// Of all levels, in one block; those not made yet are not even filled, which would cost as much.
+  /// Scores of all levels, in one block; those not made yet are not even filled, which would cost as much.
   std::unique_ptr<std::uint8_t[]> scores_;
   int levels_ = 1;  ///< made so far
 };

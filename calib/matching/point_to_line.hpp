@@ -26,13 +26,13 @@ struct MatchOptions {
   double range_noise = settings::kUsualRangeNoise_m;  ///< m, standard deviation of one range
   double max_distance = settings::kFirstDistance_m;   ///< m, first gate for correspondences
   double min_overlap = settings::kLeastOverlap;       ///< share of usable points that must find a partner
-  /// Of the translation information; below: degenerate.
+  /// Least eigenvalue ratio of the translation information; below: degenerate.
   double min_eigenvalue_ratio = settings::kDegenerateRatio;
   int max_iterations = settings::kMostMatchSteps;
   bool guess_is_near = false;  ///< by a match before: the way from afar is spared
   bool wants_part = false;     ///< a match that leaves a direction open is of use, too: both ways of it
-  /// Of the guess: x, y, yaw, in 1/m^2, 1/(m rad), 1/rad^2. Zero: the guess is a start and no prior. With it
-  /// a scan does not slide along a corridor.
+  /// Information of the guess: x, y, yaw, in 1/m^2, 1/(m rad), 1/rad^2. Zero: the guess is a start and no
+  /// prior. With it a scan does not slide along a corridor.
   Eigen::Matrix3d guess_information = Eigen::Matrix3d::Zero();
 };
 
@@ -40,7 +40,7 @@ struct MatchResult {
   MatchStatus status = MatchStatus::not_converged;
   math::Pose motion;  ///< of the sensor, in the frame of the reference scan
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();  ///< x, y, yaw of `motion`; m^2, m rad, rad^2
-  /// Of the scans alone, free of the guess; not positive definite where a direction is not observable.
+  /// Information of the scans alone, free of the guess; not positive definite if a direction is unobservable.
   Eigen::Matrix3d information = Eigen::Matrix3d::Zero();
   std::size_t inliers = 0;        ///< points of the scan that agree with lines of the reference
   double overlap = 0.0;           ///< share of usable points that are inliers
@@ -63,7 +63,7 @@ class MatchReference {
   MatchReference(Surface surface, double range_noise);
   [[nodiscard]] const Surface& surface() const { return surface_; }
   [[nodiscard]] const Walls& walls() const { return walls_; }
-  /// Of the surface's points.
+  /// The surface's points in order of bearing.
   [[nodiscard]] const BearingOrder& order() const { return order_; }
 
  private:
@@ -83,7 +83,7 @@ struct Observability {
   Eigen::Vector2d weak_direction = Eigen::Vector2d::Zero();  ///< eigenvector of the smallest one
 };
 
-/// Of the translation once yaw is eliminated (Schur complement). Ratio 0 when nothing is known about yaw.
+/// Observability of the translation, yaw eliminated (Schur complement). Ratio 0 when nothing is known of yaw.
 /// @param information of x, y, yaw
 Observability observability(const Eigen::Matrix3d& information);
 

@@ -218,7 +218,7 @@ class BranchAndBound {
  private:
   static constexpr int kMostTurns = 3;  ///< to each side that are looked at together
 
-  /// Of equals the finer one is taken first: it is nearer to the end.
+  /// The finer one of equals is taken first: it is nearer to the end.
   static bool less_promising(const Node& a, const Node& b) {
     return a.bound != b.bound ? a.bound < b.bound : a.level > b.level;
   }

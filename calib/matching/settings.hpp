@@ -91,7 +91,7 @@ inline constexpr double kUsualRangeNoise_m = 1e-2;
 inline constexpr double kBeamFloor_m = 1e-3;
 /// Standard deviations of a noise that grows with the range. Chosen.
 inline constexpr double kCertainSlope = 4.0;
-/// Of the range: some lidars' noise grows with it. Chosen.
+/// Share of the range: some lidars' noise grows with it. Chosen.
 inline constexpr double kNoiseAfar = 0.03;
 /// rad, to either side, over which the bends are taken that show the noise of the ranges. Chosen: corners and
 /// edges lie in few of them.

@@ -15,8 +15,8 @@ struct LineSums {
   double weight = 0.0;  ///< sum of 1/variance, 1/m^2
   Eigen::Vector2d first = Eigen::Vector2d::Zero();
   Eigen::Matrix2d second = Eigen::Matrix2d::Zero();
-  /// What range noise adds to `second` on the average. It lies along the beams, so that on a wall seen at a
-  /// slant it would turn the line towards them.
+  /// Mean contribution of range noise to `second`. It lies along the beams, so that on a wall seen at a slant
+  /// it would turn the line towards them.
   Eigen::Matrix2d noise = Eigen::Matrix2d::Zero();
   std::size_t count = 0;
 

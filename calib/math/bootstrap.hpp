@@ -17,7 +17,7 @@ struct BootstrapInterval {
   double upper = 0.0;  ///< 97.5 %
 };
 
-/// Of a figure of sums over blocks, settings::kBootstrapDraws draws with replacement.
+/// Bootstrap interval of a figure of sums over blocks, settings::kBootstrapDraws draws with replacement.
 /// @param blocks not empty; their sums add by +=, and one made by `{}` is zero
 /// @param figure double of a sum
 template <typename Sum, typename Figure>

@@ -21,7 +21,7 @@ struct Eigensystem {
   Eigen::VectorXd values;
   Eigen::MatrixXd vectors;
 };
-/// Of a symmetric matrix.
+/// Eigensystem of a symmetric matrix.
 Eigensystem eigensystem(const Eigen::MatrixXd& symmetric);
 
 /// In descending order.

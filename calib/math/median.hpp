@@ -19,7 +19,7 @@ inline double median_of(std::vector<double> values) {
   return *middle;
 }
 
-/// Of neighbours: one fewer than values.
+/// Differences of neighbours: one fewer than values.
 inline std::vector<double> differences_of(const std::vector<double>& values) {
   std::vector<double> differences;
   for (std::size_t k = 1; k < values.size(); ++k) differences.push_back(values[k] - values[k - 1]);

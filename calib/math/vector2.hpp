@@ -37,7 +37,7 @@ class Frame {
 /// Turned by 90 degrees, counter-clockwise.
 inline Eigen::Vector2d quarter_turn(const Eigen::Vector2d& v) { return {-v.y(), v.x()}; }
 
-/// Of length 1, along which points spread most: half the angle of (xx - yy, 2 xy), -90 to 90 degrees.
+/// Unit vector along which points spread most: half the angle of (xx - yy, 2 xy), -90 to 90 degrees.
 /// @param xx, xy, yy their moments about their centre
 inline Eigen::Vector2d direction_of_spread(double xx, double xy, double yy) {
   const double size = std::hypot(xx - yy, 2.0 * xy);

@@ -10,8 +10,8 @@
 namespace odomcalib::calib::measurement {
 namespace {
 
-/// What one scan says about its pose and about what all scans share: shift and turn of each wall, and the
-/// error of the ranges.
+/// One scan's terms for its pose and for what all scans share: shift and turn of each wall, and the error of
+/// the ranges.
 struct ScanTerms {
   Eigen::Matrix3d pose = Eigen::Matrix3d::Zero();
   Eigen::Vector3d gradient = Eigen::Vector3d::Zero();
@@ -60,7 +60,7 @@ class Adjustment {
  private:
   [[nodiscard]] Eigen::Index size() const { return of_walls_ + kRangeCoefficients; }
 
-  /// Of the first unknowns alone.
+  /// Factors of the matrix of the first unknowns alone.
   [[nodiscard]] Eigen::LDLT<Eigen::MatrixXd> factors(Eigen::Index count) const {
     Eigen::MatrixXd damped = matrix_.topLeftCorner(count, count);
     damped.diagonal().head(of_walls_).array() +=

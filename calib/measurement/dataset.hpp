@@ -23,7 +23,7 @@ struct Dataset {
   /// it sits is to be fitted, as for a lidar.
   bool reference_sits_anywhere = false;
 
-  // What was measured; empty before.
+  // Measured data; empty before.
   std::vector<FitData> data;       ///< one per recording; points to the models
   std::vector<PairSet> pair_sets;  ///< one per recording
   /// Parameters that the pairs were measured with, those of the base and of the effects; empty when they were
@@ -35,7 +35,7 @@ struct Dataset {
   /// A pose of the base itself is the reference, so that there is no sensor pose to estimate.
   [[nodiscard]] bool reference_is_base() const;
   [[nodiscard]] bool reference_is_scans() const;
-  /// Which of the base parameters stay at their nominal value.
+  /// Flags of the base parameters that stay at their nominal value.
   [[nodiscard]] std::vector<bool> fixed() const;
   /// With parameters so near, matches begin at the same guess and scans are de-skewed alike.
   [[nodiscard]] bool is_measured_with(const Eigen::VectorXd& parameters) const;

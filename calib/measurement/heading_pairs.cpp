@@ -15,7 +15,7 @@ double turn_between(const math::Pose& a, const math::Pose& b) {
   return std::abs(math::wrap_angle(b.yaw - a.yaw));
 }
 
-/// Which scan to compare with `from`.
+/// The scan to compare with `from`.
 std::optional<std::size_t> partner_of(const ScanSurfaces& scans, std::size_t from, double turn,
                                       const std::vector<bool>& used) {
   const auto& poses = scans.odometry();
@@ -110,7 +110,7 @@ class Meeting {
   }
 
  private:
-  /// Of the readings near an index, the one on this wall whose beam meets it nearest to a place.
+  /// The reading near an index, on this wall, whose beam meets it nearest to a place.
   [[nodiscard]] const matching::SurfacePoint* nearest_beam(std::size_t index, double place) const {
     const matching::SurfacePoint* best = nullptr;
     double least = settings::kHeadingGate_m;

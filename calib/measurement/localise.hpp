@@ -21,8 +21,8 @@ using RangeErrorTerms = Eigen::Matrix<double, kRangeCoefficients, 1>;
 /// Derivatives of a reading by the coefficients.
 RangeErrorTerms by_coefficient(const terms::Sighting& sighting);
 
-/// What all ranges of a recording are wrong by, as far as a map of walls can show it: walls that are seen
-/// under all angles and from all distances look bent.
+/// Common error of all ranges of a recording, as far as a map of walls can show it: walls that are seen under
+/// all angles and from all distances look bent.
 struct RangeEvidence {
   RangeErrorTerms values =
       RangeErrorTerms::Zero();  ///< fitted beside one another, and beside all walls and poses
@@ -70,7 +70,7 @@ struct Place {
 Place place_scan(const WallMap& map, const std::vector<Beam>& beams, const math::Pose& guess,
                  const PlaceOptions& options);
 
-/// What a reading says once the ranges' error is taken out. Nothing when its wall is so far away that noise
+/// Term of a reading once the ranges' error is taken out. Nothing when its wall is so far away that noise
 /// decides whether there is a reading.
 std::optional<RangeTerm> range_term(const WallMap& map, const Beam& beam, std::size_t wall,
                                     const math::Frame& sensor, const PlaceOptions& options);
@@ -79,7 +79,7 @@ std::optional<RangeTerm> range_term(const WallMap& map, const Beam& beam, std::s
 std::vector<RangeTerm> fitting_terms(const WallMap& map, const std::vector<Beam>& beams,
                                      const math::Pose& sensor, const PlaceOptions& options);
 
-/// What a reading counts, 1/m^2: less the farther out it lies, nothing beyond a few robust sigmas.
+/// Weight of a reading, 1/m^2: less the farther out it lies, nothing beyond a few robust sigmas.
 double weight_of(const RangeTerm& term, double scale);
 
 }  // namespace odomcalib::calib::measurement

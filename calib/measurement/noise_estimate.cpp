@@ -21,7 +21,7 @@ struct Observation {
 /// Symmetric matrices, one a row: xx, xy, yy, x yaw, y yaw, yaw yaw.
 using Matrices = Eigen::Array<double, Eigen::Dynamic, 6>;
 
-/// Of pairs, by columns, so that many are judged at a time.
+/// Values of pairs, by columns, so that many are judged at a time.
 struct Columns {
   Eigen::Array<double, Eigen::Dynamic, 3> residuals;
   Matrices matcher;  ///< covariance the matcher states, in room axes
@@ -32,7 +32,7 @@ void set_row(Matrices& matrices, Eigen::Index row, const Eigen::Matrix3d& m) {
   matrices.row(row) << m(0, 0), m(1, 0), m(1, 1), m(2, 0), m(2, 1), m(2, 2);
 }
 
-/// Of evenly many pairs where there are more than a scale needs.
+/// Columns of evenly spaced pairs where there are more than a scale needs.
 Columns columns_of(const Observation& o) {
   const std::size_t step = 1 + (o.pairs.size() - 1) / settings::kMostNoisePairs;
   const auto count = static_cast<Eigen::Index>(1 + (o.pairs.size() - 1) / step);
@@ -133,7 +133,7 @@ void improve_noise(const Columns& o, const Range& range, NoiseModel& noise) {
   if (misfit(o, noise) > best + settings::kNoisePresent) noise.*range.member = found;
 }
 
-/// Of a pair's errors in room axes.
+/// Scale of a pair's errors in room axes.
 struct Scale {
   Eigen::Vector3d deviation;  ///< without the jitter
   Eigen::Vector3d spread;     ///< with it, in units of that
@@ -177,7 +177,7 @@ std::array<double, 3> neighbour_correlation(const Observation& o, const NoiseMod
   return correlation;
 }
 
-/// Of whole motions, where there are any: along an open direction the residual is none.
+/// Median residual size of whole motions, where there are any: along an open direction the residual is none.
 double median_magnitude(const Observation& o, std::initializer_list<Eigen::Index> axes) {
   const bool has_whole =
       std::any_of(o.pairs.begin(), o.pairs.end(), [](const SensorPair& pair) { return !pair.is_partial; });

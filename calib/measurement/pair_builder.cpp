@@ -22,7 +22,7 @@ bool is_keyframe(const math::Pose& step, double elapsed, const PairOptions& opti
   return elapsed >= options.duration && (travel > settings::kTurnedAtAll || turn > settings::kTurnedAtAll);
 }
 
-/// Of a guess that a match is held to.
+/// Information of a guess that a match is held to.
 Eigen::Matrix3d held_guess() {
   constexpr double kPlace = 1.0 / (settings::kHeldGuess_m * settings::kHeldGuess_m);
   constexpr double kTurn = 1.0 / (settings::kHeldGuess_rad * settings::kHeldGuess_rad);
@@ -310,7 +310,7 @@ std::size_t median_of_counts(std::vector<double> counts) {
   return counts.empty() ? 0 : static_cast<std::size_t>(math::median_of(std::move(counts)));
 }
 
-/// Of a scan, medians over all.
+/// Readings and beams of a scan, medians over all.
 void count_readings(std::span<const Scan> scans, PairSet& set) {
   std::vector<double> readings, beams;
   for (const Scan& scan : scans) {

@@ -16,8 +16,8 @@ math::Pose wrapped_pose_of(const PoseSample& sample) {
   return {sample.x, sample.y, math::wrap_angle(sample.yaw)};
 }
 
-/// What each motion from one pose to the next has beyond that of the wheels; the step before a gap is left
-/// out.
+/// Differences between each motion from one pose to the next and that of the wheels; the step over a gap is
+/// left out.
 std::vector<Eigen::Vector3d> steps_beyond_wheels(std::span<const PoseSample> poses,
                                                  const PathOfWheels& wheels) {
   std::vector<Eigen::Vector3d> steps;
@@ -29,8 +29,8 @@ std::vector<Eigen::Vector3d> steps_beyond_wheels(std::span<const PoseSample> pos
   return steps;
 }
 
-/// Of a single pose, x, y, yaw. Of three poses the middle one shows the noise, whatever scale the wheels
-/// have: the second difference has six times the variance of one.
+/// Noise of a single pose, x, y, yaw. The middle one of three poses shows it, whatever scale the wheels have:
+/// the second difference has six times the variance of one.
 Eigen::Vector3d noise_of(std::span<const PoseSample> poses, const PathOfWheels& wheels) {
   const std::vector<Eigen::Vector3d> steps = steps_beyond_wheels(poses, wheels);
   if (steps.size() < 3) return Eigen::Vector3d::Constant(settings::kUnknownPoseNoise);

@@ -33,7 +33,7 @@ using PathOfWheels = std::function<math::Pose(double)>;
 /// @param trajectory must outlive it
 PathOfWheels path_of_wheels(const vehicle::Trajectory& trajectory);
 
-/// That of the nearest scan, if one is near: not all are placed where there are many.
+/// Place by the nearest scan, if one is near: not all are placed where there are many.
 /// @param places in time order
 std::optional<PlacedScan> place_at(std::span<const PlacedScan> places, double time,
                                    const PathOfWheels& wheels);

@@ -35,7 +35,7 @@ class Collector {
     open_->end = end;
     if (end - open_->begin >= settings::kFirstLookStep_s) close();
   }
-  /// What comes next does not follow.
+  /// The next motion does not follow.
   void interrupt() { open_.reset(); }
   [[nodiscard]] std::vector<ReferenceMotion> take() { return std::move(done_); }
 

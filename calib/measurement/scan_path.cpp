@@ -14,7 +14,7 @@
 namespace odomcalib::calib::measurement {
 namespace {
 
-/// Of the recording's only lidar, m.
+/// Largest range of the recording's only lidar, m.
 double range_max(const Recording& recording) {
   return recording.scans.empty() ? 0.0 : recording.scans.front().range_max;
 }

@@ -41,7 +41,7 @@ ScanPath place_scans(const Recording& recording, const vehicle::DriveModel& mode
 /// @param mount of the sensor on the base
 std::vector<vehicle::Fix> fixes_of(const ScanPath& path, const math::Pose& mount);
 
-/// Of the reference poses, which are the base's own; none for recordings without.
+/// Fixes by the reference poses, which are the base's own; none for recordings without.
 std::vector<vehicle::Fix> fixes_of(const Recording& recording);
 
 }  // namespace odomcalib::calib::measurement

@@ -45,12 +45,12 @@ std::optional<ingest::EvenStamps> even_scans(const Recording& recording, const F
   const vehicle::Trajectory odometry = data.model->trajectory(vehicle::as_span(parameters), effects);
   const auto by_given = odometry.sensor_motions(intervals);
   const auto by_even = odometry.sensor_motions(moving_intervals(data.pairs, given, even->t));
-  ingest::StampContest contest;
+  ingest::StampComparison contest;
   for (std::size_t k = 0; k < data.pairs.size(); ++k) {
     const Eigen::Vector3d a = error_of(data.pairs[k], by_given[k]), b = error_of(data.pairs[k], by_even[k]);
     for (Eigen::Index c = 0; c < 3; ++c) contest.add(a(c), b(c));
   }
-  return contest.is_for_even() ? even : std::nullopt;
+  return contest.even_is_better() ? even : std::nullopt;
 }
 
 }  // namespace odomcalib::calib::measurement

@@ -1,4 +1,4 @@
-// Which walls a beam may strike, by the way it points.
+// Index of the walls that a beam may strike, by the way it points.
 #pragma once
 
 #include <Eigen/Core>
@@ -30,7 +30,7 @@ class SectorIndex {
  private:
   static constexpr std::size_t kSectors = 64;
 
-  /// Of `count` sectors from `first` on, counter-clockwise.
+  /// Run of `count` sectors from `first` on, counter-clockwise.
   struct Sweep {
     std::size_t first = 0, count = 0;
   };

@@ -51,7 +51,7 @@ inline constexpr std::size_t kFewestHeadingPoints = 40;
 
 /// Beams on walls from which a scan is placed. Chosen.
 inline constexpr std::size_t kFewestInliers = 40;
-/// Of the beams that should strike a wall. Chosen.
+/// Inliers as a share of the beams that should strike a wall. Chosen.
 inline constexpr double kLeastInliers = 0.5;
 /// Ratio of the information's least and largest eigenvalue, of a place that is determined. Chosen.
 inline constexpr double kLeastEigenvalue = 0.01;
@@ -154,7 +154,7 @@ inline constexpr double kUnknownPoseNoise = 1e-3;
 inline constexpr double kRangeErrorSigmas = 6.0;
 /// m; surfaces of the room differ by as much. Chosen.
 inline constexpr double kLeastRangeError_m = 3e-3;
-/// Of the offset, when the incidence is allowed to explain it. Chosen.
+/// Most change of the offset, as a share of it, when the incidence is allowed to explain it. Chosen.
 inline constexpr double kMostOffsetChange = 0.5;
 /// m, where a slanted beam's error is judged, at 45 degrees. Chosen.
 inline constexpr double kUsualDistance_m = 4.0;

@@ -15,7 +15,7 @@
 
 namespace odomcalib::calib::measurement {
 
-/// Of a scan, in the sensor's frame at the middle of the sweep.
+/// Beam of a scan, in the sensor's frame at the middle of the sweep.
 struct Beam {
   Eigen::Vector2d origin;     ///< m, where the sensor was when it shot
   Eigen::Vector2d direction;  ///< of length 1
@@ -41,8 +41,8 @@ struct Strike {
   std::size_t wall = 0;
 };
 
-/// What a reading says about the pose of the sensor and about its wall: range read minus range expected, and
-/// its derivatives. All taken at the expected point, which the noise of the reading does not shift: otherwise
+/// Term of a reading for the pose of the sensor and for its wall: range read minus range expected, and its
+/// derivatives. All taken at the expected point, which the noise of the reading does not shift: otherwise
 /// noise and derivative would be correlated, and the estimate biased.
 struct RangeTerm {
   double residual = 0.0;     ///< m

@@ -21,7 +21,7 @@ struct NoiseModel {
       correlation{};  ///< lag-1 correlation of x, y, yaw without the jitter, in [-0.48, 0.3]
 };
 
-/// What the noise of a pair depends on besides its covariance.
+/// State that the noise of a pair depends on besides its covariance.
 struct PairState {
   double heading = 0.0;  ///< of the sensor at the begin, rad, in axes fixed to the room
   Eigen::Vector3d begin_velocity = Eigen::Vector3d::Zero();  ///< of the sensor in room axes: m/s, m/s, rad/s

@@ -19,17 +19,17 @@ double value_or(const Calibration& calibration, const std::string& name, double 
   return calibration.parameter(name).value_or(otherwise);
 }
 
-/// What goes up and down with time begins the next drive anywhere, unless it rounds off a drift.
+/// A term that goes up and down with time begins the next drive anywhere, unless it rounds off a drift.
 bool carries_over(const terms::FittedSmoothTerm& fitted) {
   const terms::SmoothTerm& smooth = fitted.smooth;
   if (make_smooth_term_effect(smooth)->carries_over()) return true;
   const auto named = terms::find_effect(fitted.named_term);
   return named && named->carries_over() && smooth.dependence.covariate == vehicle::Covariate::time &&
-         !is_the_lidars(smooth);
+         !belongs_to_lidar(smooth);
 }
 
-/// What belongs to the place or the day would make odometry worse elsewhere and tomorrow; an error of the
-/// lidar is none of odometry.
+/// Effects of the place or the day would make odometry worse elsewhere and tomorrow; an error of the lidar is
+/// none of odometry.
 Place place_of(const vehicle::Effect& effect) {
   if (terms::concerns_reference(effect)) return Place::reference;
   const bool stays_behind = effect.storage() == vehicle::Storage::nowhere && !effect.carries_over();
@@ -81,8 +81,8 @@ std::vector<double> deviations_of(const EffectResult& result, std::size_t count)
   return deviations;
 }
 
-/// Of radii, track width and mount in the order of the parameter vector, m and rad; zero where the file has
-/// none, or no finite one.
+/// Covariance of radii, track width and mount in the order of the parameter vector, m and rad; zero where the
+/// file has none, or no finite one.
 Eigen::MatrixXd base_covariance(const Calibration& calibration) {
   static constexpr std::array kNames = {
       "left_wheel_diameter", "right_wheel_diameter", "track_width", "lidar_x", "lidar_y", "lidar_yaw"};

@@ -1,4 +1,4 @@
-// What of a calibration dead reckoning applies, and where the rest of it belongs.
+// The part of a calibration that dead reckoning applies, and where the rest of it belongs.
 #pragma once
 
 #include <Eigen/Core>
@@ -55,8 +55,8 @@ class DriveClock {
 struct Correction {
   Eigen::VectorXd parameters;
   vehicle::EffectList effects;
-  /// Of the parameters, as far as the file has it: that of the base, and beside it the deviation of each
-  /// parameter of a named effect for itself; zero for what the file states without.
+  /// Covariance of the parameters, as far as the file has it: that of the base, and beside it the deviation
+  /// of each parameter of a named effect for itself; zero for what the file states without.
   Eigen::MatrixXd covariance;
 };
 /// A smooth term of time is about its mean: where the time is not known, nothing is better known than that.

@@ -107,7 +107,7 @@ void look_at_all(const wheels::WheelTrack& track, Course& course,
   const std::size_t n = track.t.size();
   const wheels::BaseParameters base = course.reckoning.base();
   make_context_of_moment(track, base, course.groups, n - std::min<std::size_t>(n, 3), contexts);
-  see_from_the_past(contexts.back(), track, base, course.groups);
+  fill_past_covariates(contexts.back(), track, base, course.groups);
   course.history.advance(contexts.back());
 }
 

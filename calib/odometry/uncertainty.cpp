@@ -27,7 +27,7 @@ Eigen::Matrix3d carried_on(const math::Pose& from, const math::Pose& to) {
   return carried;
 }
 
-/// That of the increment is in its own frame.
+/// The covariance of the increment is in its own frame.
 void grow(Eigen::Matrix3d& covariance, const math::Pose& from, const math::Pose& to,
           const Eigen::Vector3d& per_metre, double track_width) {
   const Eigen::Matrix3d carried = carried_on(from, to);

@@ -44,9 +44,9 @@ class Uncertainty {
   /// The pose is certain now.
   void forget();
 
-  /// Of the pose: x, y, yaw, in the frame of its origin.
+  /// Covariance of the pose: x, y, yaw, in the frame of its origin.
   [[nodiscard]] Eigen::Matrix3d of_pose() const;
-  /// Of the motion in the last interval, in the frame of the base: forward, sideways, yaw.
+  /// Covariance of the motion in the last interval, in the frame of the base: forward, sideways, yaw.
   [[nodiscard]] Eigen::Matrix3d of_twist() const;
 
  private:

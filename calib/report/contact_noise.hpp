@@ -1,4 +1,4 @@
-// What wheels and floor add to a motion by chance, for whoever has to know how far odometry may be off.
+// Noise that wheels and floor add to a motion, for whoever has to know how far odometry may be off.
 #pragma once
 
 #include <optional>

@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "calib/classical/missing_motion.hpp"
-#include "calib/estimation/gyro_witness.hpp"
+#include "calib/estimation/gyro_fit.hpp"
 #include "calib/report/found_effects.hpp"
 #include "calib/report/gate.hpp"
 #include "calib/report/left_out.hpp"
@@ -30,13 +30,13 @@ namespace odomcalib::calib::report {
 namespace {
 
 /// No gyro was held against anything.
-bool is_silent(const estimation::GyroWitness& witness) {
+bool is_silent(const estimation::GyroFit& witness) {
   return std::none_of(witness.gyros.begin(), witness.gyros.end(), [](const auto& g) { return g.used > 0; });
 }
 
 /// A list with an entry for each recording whose gyro was weighed.
 /// @param recordings one for each of the gyros
-std::string to_json(const estimation::GyroWitness& witness, std::span<const Recording> recordings) {
+std::string to_json(const estimation::GyroFit& witness, std::span<const Recording> recordings) {
   auto list = nlohmann::ordered_json::array();
   for (std::size_t k = 0; k < witness.gyros.size(); ++k) {
     const estimation::GyroFinding& gyro = witness.gyros[k];
@@ -52,7 +52,7 @@ std::string to_json(const estimation::GyroWitness& witness, std::span<const Reco
 }
 
 /// A sentence for each gyro that was left out.
-std::vector<std::string> remarks_on(const estimation::GyroWitness& witness,
+std::vector<std::string> remarks_on(const estimation::GyroFit& witness,
                                     std::span<const Recording> recordings) {
   std::vector<std::string> remarks;
   for (std::size_t k = 0; k < witness.gyros.size(); ++k)
@@ -85,7 +85,7 @@ double scale_deviation(const Findings& found) {
 /// With what was found in all recordings, what each of them says alone.
 struct Agreement {
   std::optional<selection::Homogeneity> homogeneity;
-  std::optional<Apart> apart;  ///< what speaks against one set of lengths
+  std::optional<Disagreement> apart;  ///< what speaks against one set of lengths
 };
 
 Agreement agreement(const Findings& found) {
@@ -126,7 +126,7 @@ double variance_of_lever(const Findings& found) {
 }
 
 BaseEstimate base_estimate(const Findings& found, const Agreement& agreement,
-                           const estimation::GyroWitness& gyros) {
+                           const estimation::GyroFit& gyros) {
   const wheels::BaseParameters base = vehicle::to_base(vehicle::as_span(gyros.parameters));
   Eigen::MatrixXd covariance = with_scale_error(gyros.covariance, base, scale_deviation(found));
   covariance.block<2, 2>(vehicle::kMountX, vehicle::kMountX).diagonal().array() += variance_of_lever(found);
@@ -172,8 +172,8 @@ ResidualReport residual(const Findings& found, const PlainFit& plain, const Held
   return {true, before->rms, after->rms, after->noise_floor};
 }
 
-/// What happened in so few pairs that a robust fit leaves them out is no part of the model, but something
-/// that a user should know.
+/// Events in so few pairs that a robust fit leaves them out are no part of the model, but something that a
+/// user should know.
 Outliers outliers_of(const Findings& found) {
   const auto& data = found.fit.dataset.data;
   const auto& [effects, fit] = found.outcome.model;
@@ -195,7 +195,7 @@ std::optional<Unexplained> unexplained(const Findings& found, const Outliers& ou
 
 /// Members of the file beyond its contract.
 std::map<std::string, std::string> extensions(const Findings& found, const SmoothTerms& smooths,
-                                              const Outliers& outliers, const estimation::GyroWitness& gyros,
+                                              const Outliers& outliers, const estimation::GyroFit& gyros,
                                               const HeldOutErrors& errors) {
   std::map<std::string, std::string> members;
   if (!smooths.empty()) members[terms::kSmoothTermsMember] = smooth_terms_to_json(smooths);
@@ -213,7 +213,7 @@ std::map<std::string, std::string> extensions(const Findings& found, const Smoot
 }
 
 std::vector<std::string> remarks_in(const Findings& found, const SmoothTerms& smooths,
-                                    const Outliers& outliers, const estimation::GyroWitness& gyros) {
+                                    const Outliers& outliers, const estimation::GyroFit& gyros) {
   std::vector<std::string> sentences = found.remarks;
   if (outliers) sentences.push_back(to_text(*outliers));
   for (const std::string& remark : remarks_on(found.fit.dataset.recordings.stamps()))
@@ -226,53 +226,54 @@ std::vector<std::string> remarks_in(const Findings& found, const SmoothTerms& sm
   return sentences;
 }
 
-/// Of these recordings the one whose scans have the fewest readings.
+/// The one of these recordings whose scans have the fewest readings.
 const measurement::PairSet& thinnest_scans(std::span<const measurement::PairSet> sets) {
   return *std::min_element(sets.begin(), sets.end(), [](const auto& a, const auto& b) {
     return a.readings * b.beams < b.readings * a.beams;
   });
 }
 
-/// What became of the pairs of scans.
-void count_matches(std::span<const measurement::PairSet> sets, Footing& footing) {
+/// Counts the pairs of scans by their outcome.
+void count_matches(std::span<const measurement::PairSet> sets, VerdictEvidence& evidence) {
   for (const measurement::PairSet& set : sets) {
-    footing.matched += set.pairs.size();
-    footing.partial += set.partial;
-    footing.unmatched += set.unmatched;
-    footing.stood += set.stood;
+    evidence.matched += set.pairs.size();
+    evidence.partial += set.partial;
+    evidence.unmatched += set.unmatched;
+    evidence.stood += set.stood;
   }
   const measurement::PairSet& thinnest = thinnest_scans(sets);
-  footing.readings = thinnest.readings;
-  footing.beams = thinnest.beams;
+  evidence.readings = thinnest.readings;
+  evidence.beams = thinnest.beams;
 }
 
-/// What the verdict stands on.
-Footing footing(const Findings& found, const BaseEstimate& base, const ReportData& data,
-                const std::optional<Apart>& apart, std::vector<std::string> remarks) {
+/// The evidence that the verdict stands on.
+VerdictEvidence evidence(const Findings& found, const BaseEstimate& base, const ReportData& data,
+                         const std::optional<Disagreement>& apart, std::vector<std::string> remarks) {
   const estimation::FitResult& fit = found.outcome.model.fit;
-  Footing footing;
-  footing.remarks = std::move(remarks);
-  footing.drive_errors = data.drive_errors;
-  footing.axes = data.axes;
-  footing.outliers = fit.discarded;
-  footing.pairs = fit.used + fit.discarded;
-  footing.losses = losses_of(found.fit.dataset.recordings.view());
-  footing.recordings_apart = apart;
-  footing.of_poses = found.fit.dataset.reference_is_base();
-  footing.motion = found.fit.dataset.recordings.front().motion;
-  footing.converged = fit.converged;
-  footing.measured = base.measured;
-  footing.missing_motion = classical::missing_motion(measurement::wheel_motions(found.fit.dataset.data, 0.0));
-  if (!found.fit.dataset.reference_is_scans() || found.every_scan_placed) return footing;
-  count_matches(found.fit.dataset.pair_sets, footing);
-  return footing;
+  VerdictEvidence evidence;
+  evidence.remarks = std::move(remarks);
+  evidence.drive_errors = data.drive_errors;
+  evidence.axes = data.axes;
+  evidence.outliers = fit.discarded;
+  evidence.pairs = fit.used + fit.discarded;
+  evidence.losses = losses_of(found.fit.dataset.recordings.view());
+  evidence.recordings_apart = apart;
+  evidence.of_poses = found.fit.dataset.reference_is_base();
+  evidence.motion = found.fit.dataset.recordings.front().motion;
+  evidence.converged = fit.converged;
+  evidence.measured = base.measured;
+  evidence.missing_motion =
+      classical::missing_motion(measurement::wheel_motions(found.fit.dataset.data, 0.0));
+  if (!found.fit.dataset.reference_is_scans() || found.every_scan_placed) return evidence;
+  count_matches(found.fit.dataset.pair_sets, evidence);
+  return evidence;
 }
 
 /// Where hardly any scan matched, a fit that failed has nothing to say but that.
 Error cause_of(const Error& error, std::span<const measurement::PairSet> sets) {
-  Footing footing;
-  count_matches(sets, footing);
-  const auto what = poor_matches(footing);
+  VerdictEvidence evidence;
+  count_matches(sets, evidence);
+  const auto what = poor_matches(evidence);
   if (!what) return error;
   return {ErrorCode::refused, *what, "scan matching",
           "drive where the lidar sees walls on all sides, not along a corridor"};
@@ -328,8 +329,8 @@ Calibration refused(const estimation::Fit& failed, const classical::ClosedFormOp
 Calibration calibrated(const Findings& found) {
   const estimation::FitResult& fit = found.outcome.model.fit;
   const PlainFit plain = plain_fit(found);
-  const estimation::GyroWitness gyros = estimation::weigh_gyros(
-      found.fit.dataset.data, found.outcome.model.effects, fit, found.fit.dataset.recordings.view());
+  const estimation::GyroFit gyros = estimation::fit_gyros(found.fit.dataset.data, found.outcome.model.effects,
+                                                          fit, found.fit.dataset.recordings.view());
   const Agreement together = agreement(found);
   const BaseEstimate base = base_estimate(found, together, gyros);
   const SmoothTerms smooths = found_smooths(found);
@@ -353,7 +354,7 @@ Calibration calibrated(const Findings& found) {
     store_homogeneity(*together.homogeneity, found.fit.dataset.recordings.view(), calibration);
 
   const GateResult gate = judge(
-      calibration, footing(found, base, data, together.apart, remarks_in(found, smooths, outliers, gyros)));
+      calibration, evidence(found, base, data, together.apart, remarks_in(found, smooths, outliers, gyros)));
   calibration.verdict = gate.verdict;
   calibration.reasons = gate.reasons;
   calibration.next_step = gate.next_step;

@@ -1,5 +1,5 @@
-// What a solve found, as the calibration file states it: parameters, effects with their evidence, what stays
-// unexplained, the held-out residual, and the verdict.
+// Findings of a solve, as the calibration file states them: parameters, effects with their evidence, what
+// stays unexplained, the held-out residual, and the verdict.
 #pragma once
 
 #include <string>

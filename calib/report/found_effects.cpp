@@ -57,7 +57,7 @@ EffectResult values_of(const vehicle::Effect& effect, Eigen::Index first, const 
   result.name = effect.name();
   for (const vehicle::EffectParameter& parameter : effect.parameters()) {
     const double deviation = std::sqrt(std::max(fit.covariance(first, first), 0.0));
-    // What the data do not speak of has no deviation, rather than none at all.
+    // A parameter that the data do not speak of has no deviation, rather than one of zero.
     const bool is_estimated = !parameter.fixed && deviation > 0.0;
     result.parameters.push_back(
         {parameter.name, {fit.parameters(first), is_estimated ? deviation : -1.0, parameter.unit}});
@@ -101,7 +101,7 @@ terms::FittedSmoothTerm fitted(const selection::AddedSmoothTerm& added, Eigen::I
   return smooth;
 }
 
-/// What stays without a name, put together from its parts.
+/// Summary of what stays without a name, put together from its parts.
 class UnnamedSummary {
  public:
   void mention(const std::string& covariate) {
@@ -126,7 +126,7 @@ class UnnamedSummary {
   double left_ = 1.0;  // of the squared error
 };
 
-/// What goes with covariates, but is no part of the model.
+/// Unexplained error that goes with covariates, but is no part of the model.
 std::optional<Unexplained> flagged(const std::vector<vehicle::Covariate>& covariates, double p_value) {
   if (covariates.empty()) return std::nullopt;
   Unexplained unexplained{{}, p_value, 0.0};

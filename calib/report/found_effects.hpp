@@ -11,8 +11,8 @@
 
 namespace odomcalib::calib::report {
 
-/// Of the lidar, of its stamps, and of the wheels, the clocks and the floor. Smooth terms have no name and
-/// are not among them.
+/// Effects of the lidar, of its stamps, and of the wheels, the clocks and the floor. Smooth terms have no
+/// name and are not among them.
 /// @param plain fit of the base parameters alone to the same pairs; nullopt where it failed
 std::vector<EffectResult> found_effects(const Findings& found,
                                         const std::optional<estimation::FitResult>& plain);
@@ -26,7 +26,7 @@ std::optional<Unexplained> unnamed_smooths(const Findings& found);
 /// Where the only finding of a recording is what goes with its outliers: a defect that is not compensated.
 std::optional<Unexplained> flagged_outliers(const selection::OutlierTrace& outliers);
 
-/// What goes with odometry's error although no function of it predicts anything: it is not compensated.
+/// Covariates that odometry's error goes with although no function of them predicts it: not compensated.
 std::optional<Unexplained> failed_validation(const selection::SearchResult& outcome);
 
 }  // namespace odomcalib::calib::report

@@ -43,10 +43,10 @@ std::string next_after(const Error& error) {
   return error.remedy.empty() ? "record again" : error.remedy + "; then solve again";
 }
 
-GateResult judge(const Calibration& calibration, const Footing& footing) {
+GateResult judge(const Calibration& calibration, const VerdictEvidence& evidence) {
   GateResult refused{Verdict::refused, {}}, warned{Verdict::accepted_with_warnings, {}};
   for (const VerdictRule& rule : verdict_rules())
-    for (const Objection& objection : rule.objections(calibration, footing)) {
+    for (const Objection& objection : rule.objections(calibration, evidence)) {
       if (objection.is_said) continue;
       GateResult& result = objection.refuses ? refused : warned;
       result.reasons.push_back(objection.reason);

@@ -20,7 +20,7 @@ struct GateResult {
 };
 
 /// Recordings that disagree about the robot.
-struct Apart {
+struct Disagreement {
   bool refuses = false;  ///< by more than wider deviations could stand for
   std::string reason;
 };
@@ -32,8 +32,8 @@ struct Loss {
   bool of_wheels = false;  ///< not of the reference
 };
 
-/// What the values stand on.
-struct Footing {
+/// The evidence that the values stand on.
+struct VerdictEvidence {
   bool converged = true;
   std::size_t matched = 0;           ///< pairs of scans, where the values come from these
   std::size_t unmatched = 0;         ///< pairs that gave no motion
@@ -45,10 +45,10 @@ struct Footing {
   std::vector<ResidualAxis> axes = {};  ///< of the residual, with their runs tests
   std::size_t outliers = 0, pairs = 0;  ///< pairs that contradict all others, of all
   std::vector<Loss> losses = {};        ///< of streams that lost any
-  std::optional<Apart> recordings_apart = std::nullopt;
+  std::optional<Disagreement> recordings_apart = std::nullopt;
   bool of_poses = false;                      ///< the reference is poses of the base
   MotionSource motion = MotionSource::ticks;  ///< what told the motion of the wheels
-  /// What was hardly driven: classical::missing_motion.
+  /// Motion that was hardly driven: classical::missing_motion.
   std::optional<std::string> missing_motion = std::nullopt;
   std::size_t partial = 0;              ///< of the matched pairs, those that leave a direction open
   std::size_t stood = 0;                ///< pairs left out: the wheels turned and the robot stood
@@ -60,9 +60,9 @@ bool odometry_is_off(const std::vector<DriveError>& errors);
 
 /// Every rule of the table in verdict_rules.hpp, in its order: refused if one refuses, for its reasons alone;
 /// accepted with warnings if one warns.
-GateResult judge(const Calibration& calibration, const Footing& footing);
+GateResult judge(const Calibration& calibration, const VerdictEvidence& evidence);
 
-/// What to do about an error that refuses a calibration.
+/// The next step after an error that refuses a calibration.
 std::string next_after(const Error& error);
 
 /// Why a calibration failed, where the recording itself shows it: only of what was refused or fits badly.

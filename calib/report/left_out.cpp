@@ -11,7 +11,7 @@
 namespace odomcalib::calib::report {
 namespace {
 
-/// Of several recordings the name tells which.
+/// The name says which of several recordings is meant.
 std::string reason_in(std::span<const Recording> recordings, std::size_t k, const std::string& reason) {
   return recordings.size() > 1 ? recordings[k].name + ": " + reason : reason;
 }

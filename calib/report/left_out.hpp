@@ -1,5 +1,5 @@
-// What was left out on the way from the files to the values, and what was put right: as the calibration file
-// lists it, and what of it the verdict weighs.
+// Data left out and data put right on the way from the files to the values: as the calibration file lists
+// them, and what of them the verdict weighs.
 #pragma once
 
 #include <span>
@@ -13,7 +13,7 @@
 
 namespace odomcalib::calib::report {
 
-/// Of the recordings, and the pairs that gave no motion.
+/// Samples left out of the recordings, and the pairs that gave no motion.
 /// @param pairs of each recording; none where no pair was measured
 std::vector<Discarded> left_out(std::span<const Recording> recordings,
                                 std::span<const measurement::PairSet> pairs);
@@ -21,10 +21,10 @@ std::vector<Discarded> left_out(std::span<const Recording> recordings,
 /// The pairs that a fit does not believe, of each recording.
 std::vector<Discarded> outlier_pairs(const measurement::Dataset& dataset, const estimation::FitResult& fit);
 
-/// What the recordings say of themselves, and stamps that were not believed.
+/// Repairs that the recordings state themselves, and stamps that were not believed.
 std::vector<Repair> repairs_of(const ingest::Recordings& recordings);
 
-/// Of what the values stand on: wheels, and scans or poses.
+/// Losses of what the values stand on: wheels, and scans or poses.
 std::vector<Loss> losses_of(std::span<const Recording> recordings);
 
 }  // namespace odomcalib::calib::report

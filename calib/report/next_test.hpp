@@ -1,4 +1,4 @@
-// Which motion would teach most, after a first calibration.
+// The motion that would teach most, after a first calibration.
 #pragma once
 
 #include <optional>

@@ -49,8 +49,8 @@ bool any_too_far(const selection::Homogeneity& found) {
 
 }  // namespace
 
-std::optional<Apart> recordings_apart(const selection::Homogeneity& found,
-                                      std::span<const Recording> recordings) {
+std::optional<Disagreement> recordings_apart(const selection::Homogeneity& found,
+                                             std::span<const Recording> recordings) {
   if (!(found.p_value < settings::kApartLevel)) return std::nullopt;
   const auto row = static_cast<Eigen::Index>(found.recording);
   const double difference = found.differences(row, found.parameter);
@@ -61,13 +61,14 @@ std::optional<Apart> recordings_apart(const selection::Homogeneity& found,
       " than in the " + (recordings.size() > 2 ? "others" : "other") + ", " +
       math::significant(std::abs(found.sigmas(row, found.parameter)), 3) + " deviations";
   if (any_too_far(found))
-    return Apart{true, what +
-                           "; solve recordings of different robots, or of one before and after a change of "
-                           "tyres, load or lidar, separately"};
-  return Apart{false,
-               what +
-                   "; the stated deviations are widened by what lies between recordings; if tyres, load "
-                   "or floor changed, solve them separately"};
+    return Disagreement{true,
+                        what +
+                            "; solve recordings of different robots, or of one before and after a change of "
+                            "tyres, load or lidar, separately"};
+  return Disagreement{
+      false, what +
+                 "; the stated deviations are widened by what lies between recordings; if tyres, load "
+                 "or floor changed, solve them separately"};
 }
 
 void store_homogeneity(const selection::Homogeneity& found, std::span<const Recording> recordings,

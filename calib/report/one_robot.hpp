@@ -1,5 +1,5 @@
 // Whether several recordings are of one robot in one state: what the calibration file and the verdict say.
-// What they state of it themselves was compared before anything was measured (ingest/two_robots.hpp).
+// Their own statements were compared before anything was measured (ingest/two_robots.hpp).
 #pragma once
 
 #include <optional>
@@ -12,9 +12,9 @@
 
 namespace odomcalib::calib::report {
 
-/// What speaks against one set of lengths; nullopt where chance explains the differences.
-std::optional<Apart> recordings_apart(const selection::Homogeneity& found,
-                                      std::span<const Recording> recordings);
+/// Evidence against one set of lengths; nullopt where chance explains the differences.
+std::optional<Disagreement> recordings_apart(const selection::Homogeneity& found,
+                                             std::span<const Recording> recordings);
 
 /// The members `recordings` and `homogeneity` of the calibration file.
 void store_homogeneity(const selection::Homogeneity& found, std::span<const Recording> recordings,

@@ -124,7 +124,7 @@ ResidualAxis axis_of(const estimation::FitResult& fit, Eigen::Index axis, const 
   return out;
 }
 
-/// Of the final model's noise: what it takes measurements and wheels to err by, axis by axis.
+/// Adds the final model's noise: the errors that it expects of measurements and wheels, axis by axis.
 void add_noise(const measurement::Dataset& dataset, const estimation::FitResult& fit,
                std::vector<ResidualAxis>& axes) {
   for (std::size_t axis = 0; axis < axes.size(); ++axis) {
@@ -145,7 +145,7 @@ void add_noise(const measurement::Dataset& dataset, const estimation::FitResult&
   }
 }
 
-/// Of the first recording, over its time.
+/// Residuals of the first recording, over its time.
 std::vector<ResidualSample> series_of(const measurement::Dataset& dataset, const estimation::FitResult& fit) {
   std::vector<ResidualSample> series;
   const auto& pairs = dataset.data.front().pairs;

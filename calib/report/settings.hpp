@@ -94,7 +94,7 @@ inline constexpr double kMostUnexplained = 0.5;
 /// one wheel that loses a fifth of its counts now and then (5.3 to 9.9), or slips by a fifth for half of the
 /// drive (3.6 to 7.5), which may be accepted with warnings.
 inline constexpr double kMostSigns = 5.8;
-/// What a single sign counts for at most: one alone never refuses. Chosen.
+/// Largest weight of a single sign: one alone never refuses. Chosen.
 inline constexpr double kHeaviestSign = 4.0;
 
 // --- Several recordings

@@ -46,8 +46,8 @@ constexpr std::array kDriveFigures = {
     DriveFigure{"straight_metre_heading", "the heading over a straight metre", settings::kMetreOff_rad},
     DriveFigure{"full_turn_heading", "the heading over a full turn", settings::kTurnOff_rad}};
 
-const DriveError* error_of(const Footing& footing, const char* name) {
-  for (const DriveError& error : footing.drive_errors)
+const DriveError* error_of(const VerdictEvidence& evidence, const char* name) {
+  for (const DriveError& error : evidence.drive_errors)
     if (error.name == name) return &error;
   return nullptr;
 }
@@ -66,16 +66,16 @@ bool is_no_better(const DriveError& error) {
   return could_gain(error) && error.after->value >= settings::kNoBetter * error.before->value;
 }
 
-/// Of the figures that were off, none came nearer to the truth.
+/// None of the figures that were off came nearer to the truth.
 bool is_nothing_gained(const std::vector<DriveError>& errors) {
   return std::none_of(errors.begin(), errors.end(),
                       [](const DriveError& error) { return could_gain(error) && !is_no_better(error); });
 }
 
-Objections no_better_than_before(const Calibration&, const Footing& footing) {
-  const bool refuses = is_nothing_gained(footing.drive_errors);
+Objections no_better_than_before(const Calibration&, const VerdictEvidence& evidence) {
+  const bool refuses = is_nothing_gained(evidence.drive_errors);
   Objections found;
-  for (const DriveError& error : footing.drive_errors) {
+  for (const DriveError& error : evidence.drive_errors) {
     const auto words = std::find_if(kDriveFigures.begin(), kDriveFigures.end(),
                                     [&](const DriveFigure& figure) { return figure.name == error.name; });
     if (!is_no_better(error)) continue;
@@ -91,10 +91,10 @@ Objections no_better_than_before(const Calibration&, const Footing& footing) {
   return found;
 }
 
-Objections still_off(const Calibration&, const Footing& footing) {
+Objections still_off(const Calibration&, const VerdictEvidence& evidence) {
   Objections found;
   for (const DriveFigure& figure : kDriveFigures) {
-    const DriveError* error = error_of(footing, figure.name);
+    const DriveError* error = error_of(evidence, figure.name);
     if (error == nullptr || !error->after || !(error->after->low > figure.largest)) continue;
     found.push_back(sign(std::string(figure.words) + " is still off by " +
                              amount(*error, error->after->value) +
@@ -113,9 +113,9 @@ const DriveError* excessive(const std::vector<DriveError>& errors) {
   return error->after->value > settings::kWarnResidual * floor && error->after->low > floor ? error : nullptr;
 }
 
-/// What loses counts or slips now and then leaves most pairs clean, and adds up on the way.
-Objections odometry_off(const Calibration&, const Footing& footing) {
-  const DriveError* error = excessive(footing.drive_errors);
+/// Lost counts or slip now and then leave most pairs clean, and add up on the way.
+Objections odometry_off(const Calibration&, const VerdictEvidence& evidence) {
+  const DriveError* error = excessive(evidence.drive_errors);
   if (error == nullptr) return {};
   const double ratio = error->after->value / *error->noise_floor;
   return {sign("odometry over ten seconds is off by " + times(ratio) +
@@ -126,17 +126,17 @@ Objections odometry_off(const Calibration&, const Footing& footing) {
 
 // --- Matches ---------------------------------------------------------------------------------------------
 
-double share_of_matches(const Footing& footing) {
-  const auto all = static_cast<double>(footing.matched + footing.unmatched + footing.stood);
-  return all > 0.0 ? static_cast<double>(footing.matched) / all : 1.0;
+double share_of_matches(const VerdictEvidence& evidence) {
+  const auto all = static_cast<double>(evidence.matched + evidence.unmatched + evidence.stood);
+  return all > 0.0 ? static_cast<double>(evidence.matched) / all : 1.0;
 }
 
-bool are_in_part(const Footing& footing) { return 2 * footing.partial > footing.matched; }
+bool are_in_part(const VerdictEvidence& evidence) { return 2 * evidence.partial > evidence.matched; }
 
 /// The rest may say something else.
-bool has_few_matches(const Footing& footing) {
-  return share_of_matches(footing) <
-         (are_in_part(footing) ? settings::kFewestMatchedInPart : settings::kFewestMatched);
+bool has_few_matches(const VerdictEvidence& evidence) {
+  return share_of_matches(evidence) <
+         (are_in_part(evidence) ? settings::kFewestMatchedInPart : settings::kFewestMatched);
 }
 
 /// ", with 17 of 361 readings a scan" where so many beams met nothing that it matters; else nothing.
@@ -154,17 +154,17 @@ std::string while_it_stood(std::size_t pairs) {
          "sees moves along with it, or scans came twice";
 }
 
-std::string matches_text(const Footing& footing) {
-  const std::string some = footing.matched == 0 ? "none" : "only " + std::to_string(footing.matched);
-  return some + " of " + std::to_string(footing.matched + footing.unmatched + footing.stood) +
-         " pairs of scans could be matched" + few_readings(footing.readings, footing.beams) +
-         while_it_stood(footing.stood);
+std::string matches_text(const VerdictEvidence& evidence) {
+  const std::string some = evidence.matched == 0 ? "none" : "only " + std::to_string(evidence.matched);
+  return some + " of " + std::to_string(evidence.matched + evidence.unmatched + evidence.stood) +
+         " pairs of scans could be matched" + few_readings(evidence.readings, evidence.beams) +
+         while_it_stood(evidence.stood);
 }
 
-std::string parts_text(const Footing& footing) {
-  return std::to_string(footing.partial) + " of " + std::to_string(footing.matched) +
-         " pairs of scans leave one direction open" + few_readings(footing.readings, footing.beams) +
-         while_it_stood(footing.stood);
+std::string parts_text(const VerdictEvidence& evidence) {
+  return std::to_string(evidence.partial) + " of " + std::to_string(evidence.matched) +
+         " pairs of scans leave one direction open" + few_readings(evidence.readings, evidence.beams) +
+         while_it_stood(evidence.stood);
 }
 
 // --- Lengths ---------------------------------------------------------------------------------------------
@@ -193,12 +193,12 @@ std::optional<double> relative_deviation(const QuantityList& quantities, const s
   return std::nullopt;
 }
 
-std::vector<Length> lengths_of(const Calibration& calibration, const Footing& footing) {
+std::vector<Length> lengths_of(const Calibration& calibration, const VerdictEvidence& evidence) {
   std::vector<Length> lengths;
   for (const auto& [name, quantity] : calibration.parameters) {
     if (name.starts_with("lidar_")) continue;
     Length length{name, quantity, nominal_value(calibration.robot, name)};
-    length.measured = relative_deviation(footing.measured, name).value_or(length.relative());
+    length.measured = relative_deviation(evidence.measured, name).value_or(length.relative());
     lengths.push_back(length);
   }
   return lengths;
@@ -208,22 +208,22 @@ constexpr const char* kWalls = "drive where the lidar sees walls on all sides";
 constexpr const char* kCorrect =
     "correct robot.toml, or the recording, as the first reason says, and solve again";
 
-std::string motion_for(const std::string& name, const Footing& footing) {
-  if (footing.missing_motion) return *footing.missing_motion;
+std::string motion_for(const std::string& name, const VerdictEvidence& evidence) {
+  if (evidence.missing_motion) return *evidence.missing_motion;
   return name == "track_width" ? "more turns on the spot, both ways"
                                : "longer straight lines, forward and backward";
 }
 
-/// What is measured by few pairs may as well be a few failed matches.
-bool names_no_cause(const Footing& footing) {
-  return footing.pairs > 0 && static_cast<double>(footing.pairs) < settings::kFewestForCause;
+/// A finding from few pairs may as well be a few failed matches.
+bool names_no_cause(const VerdictEvidence& evidence) {
+  return evidence.pairs > 0 && static_cast<double>(evidence.pairs) < settings::kFewestForCause;
 }
 
-/// Of a length that the motion does not determine its value says nothing.
-Objections undetermined_lengths(const std::vector<Length>& lengths, const Footing& footing) {
+/// The value of a length that the motion does not determine says nothing.
+Objections undetermined_lengths(const std::vector<Length>& lengths, const VerdictEvidence& evidence) {
   const auto open = [](const Length& length) { return !length.is_determined(); };
-  if (names_no_cause(footing) && std::all_of(lengths.begin(), lengths.end(), open))
-    return {refusal("too short: " + std::to_string(footing.pairs) +
+  if (names_no_cause(evidence) && std::all_of(lengths.begin(), lengths.end(), open))
+    return {refusal("too short: " + std::to_string(evidence.pairs) +
                         " measured motions determine no length; record a minute or more, straight lines and "
                         "turns on the spot, both ways",
                     "record a minute or more, straight lines and turns on the spot, both ways")};
@@ -234,26 +234,26 @@ Objections undetermined_lengths(const std::vector<Length>& lengths, const Footin
                          (length.measured < 1.0 ? "is determined to " + percent(length.measured) + " only"
                                                 : std::string("is not determined"));
     reason += "; to fix that, ";
-    const std::string motion = "record " + motion_for(length.name, footing);
-    reason += are_in_part(footing) ? std::string(kWalls) + ": " + parts_text(footing) : motion;
-    found.push_back(refusal(reason, (are_in_part(footing) ? kWalls : motion) + ", and solve again"));
+    const std::string motion = "record " + motion_for(length.name, evidence);
+    reason += are_in_part(evidence) ? std::string(kWalls) + ": " + parts_text(evidence) : motion;
+    found.push_back(refusal(reason, (are_in_part(evidence) ? kWalls : motion) + ", and solve again"));
   }
   return found;
 }
 
-std::string by_so_few(const Footing& footing) {
-  std::string text = " by " + std::to_string(footing.pairs) + " measured motions only, too few to say why";
-  text += few_readings(footing.readings, footing.beams) + "; record longer";
-  if (!footing.of_poses) text += ", and drive where the lidar sees walls on all sides";
+std::string by_so_few(const VerdictEvidence& evidence) {
+  std::string text = " by " + std::to_string(evidence.pairs) + " measured motions only, too few to say why";
+  text += few_readings(evidence.readings, evidence.beams) + "; record longer";
+  if (!evidence.of_poses) text += ", and drive where the lidar sees walls on all sides";
   return text;
 }
 
 /// The joint fit starts at the nominal heading of the lidar: of one that looks backwards all lengths are
 /// negative.
-Objections negative_lengths(const std::vector<Length>& lengths, const Footing& footing) {
+Objections negative_lengths(const std::vector<Length>& lengths, const VerdictEvidence& evidence) {
   const auto negative = [](const Length& length) { return !length.is_positive(); };
-  if (names_no_cause(footing) && std::any_of(lengths.begin(), lengths.end(), negative))
-    return {refusal("a length comes out as none" + by_so_few(footing))};
+  if (names_no_cause(evidence) && std::any_of(lengths.begin(), lengths.end(), negative))
+    return {refusal("a length comes out as none" + by_so_few(evidence))};
   if (lengths.size() == 3 && std::all_of(lengths.begin(), lengths.end(), negative))
     return {
         refusal("the reference looks backwards by what lidar_pose says (by their yaw, of poses): all lengths "
@@ -279,7 +279,7 @@ bool is_implausible(const Length& length) {
 }
 
 /// One number that is wrong shows in several lengths.
-std::optional<Objection> common_factor(const Calibration& calibration, const Footing& footing,
+std::optional<Objection> common_factor(const Calibration& calibration, const VerdictEvidence& evidence,
                                        const std::vector<Length>& lengths) {
   if (lengths.size() != 3 || !(calibration.robot.left_wheel_diameter > 0.0)) return std::nullopt;
   classical::LengthRatios ratios;
@@ -293,7 +293,7 @@ std::optional<Objection> common_factor(const Calibration& calibration, const Foo
     else
       ratios.track = ratio;
   }
-  const auto cause = cause_of_ratios(ratios, {calibration.robot, footing.motion, footing.of_poses});
+  const auto cause = cause_of_ratios(ratios, {calibration.robot, evidence.motion, evidence.of_poses});
   if (!cause) return std::nullopt;
   return objection_to(*cause, std::any_of(lengths.begin(), lengths.end(), is_implausible));
 }
@@ -310,11 +310,11 @@ std::optional<Objection> objection_to_deviation(const Length& length) {
   return std::nullopt;
 }
 
-std::optional<Objection> objection_to_change(const Length& length, const Footing& footing) {
+std::optional<Objection> objection_to_change(const Length& length, const VerdictEvidence& evidence) {
   if (!(length.nominal > 0.0)) return std::nullopt;
   const double ratio = length.quantity.value / length.nominal;
-  if (is_implausible(length) && names_no_cause(footing))
-    return refusal(length.name + " is " + percent(ratio) + " of its nominal value" + by_so_few(footing));
+  if (is_implausible(length) && names_no_cause(evidence))
+    return refusal(length.name + " is " + percent(ratio) + " of its nominal value" + by_so_few(evidence));
   if (is_implausible(length))
     return refusal(length.name + " is " + percent(ratio) +
                        " of its nominal value: check ticks per revolution, gear ratio and units",
@@ -327,26 +327,26 @@ std::optional<Objection> objection_to_change(const Length& length, const Footing
 }
 
 /// In the order of the parameters: what a length is not, how well it is known, how far it is from nominal.
-Objections lengths(const Calibration& calibration, const Footing& footing) {
-  if (has_few_matches(footing)) return {};  // which unmatched_pairs says
-  const std::vector<Length> all = lengths_of(calibration, footing);
-  if (Objections found = undetermined_lengths(all, footing); !found.empty()) return found;
-  if (Objections found = negative_lengths(all, footing); !found.empty()) return found;
-  const auto factor = names_no_cause(footing) ? std::nullopt : common_factor(calibration, footing, all);
+Objections lengths(const Calibration& calibration, const VerdictEvidence& evidence) {
+  if (has_few_matches(evidence)) return {};  // which unmatched_pairs says
+  const std::vector<Length> all = lengths_of(calibration, evidence);
+  if (Objections found = undetermined_lengths(all, evidence); !found.empty()) return found;
+  if (Objections found = negative_lengths(all, evidence); !found.empty()) return found;
+  const auto factor = names_no_cause(evidence) ? std::nullopt : common_factor(calibration, evidence, all);
   Objections found;
   if (factor) found.push_back(*factor);
   for (const Length& length : all) {
     if (const auto objection = objection_to_deviation(length)) found.push_back(*objection);
     if (factor) continue;
-    if (const auto objection = objection_to_change(length, footing)) found.push_back(*objection);
+    if (const auto objection = objection_to_change(length, evidence)) found.push_back(*objection);
   }
   return found;
 }
 
 /// Both may be right: what is called front decides.
-Objections lidar_yaw(const Calibration& calibration, const Footing& footing) {
+Objections lidar_yaw(const Calibration& calibration, const VerdictEvidence& evidence) {
   const auto yaw = calibration.parameter("lidar_yaw");
-  if (!yaw || !calibration.robot.lidar_pose || names_no_cause(footing)) return {};
+  if (!yaw || !calibration.robot.lidar_pose || names_no_cause(evidence)) return {};
   const double apart = math::wrap_angle(*yaw - (*calibration.robot.lidar_pose)[2]);
   if (!(std::abs(apart) > classical::settings::kFarYaw_rad)) return {};
   return {warning("lidar_yaw differs from its nominal value by " + math::fixed(apart * 180.0 / math::kPi, 0) +
@@ -355,37 +355,37 @@ Objections lidar_yaw(const Calibration& calibration, const Footing& footing) {
 
 // --- Recordings --------------------------------------------------------------------------------------------
 
-Objections recordings_disagree(const Calibration&, const Footing& footing) {
-  if (!footing.recordings_apart) return {};
-  return {{footing.recordings_apart->refuses, footing.recordings_apart->reason}};
+Objections recordings_disagree(const Calibration&, const VerdictEvidence& evidence) {
+  if (!evidence.recordings_apart) return {};
+  return {{evidence.recordings_apart->refuses, evidence.recordings_apart->reason}};
 }
 
 // --- Pairs -------------------------------------------------------------------------------------------------
 
-Objections unmatched_pairs(const Calibration&, const Footing& footing) {
-  const std::string finding = matches_text(footing) + "; drive where the lidar sees walls on all sides";
-  if (has_few_matches(footing)) return {refusal(finding)};
-  if (share_of_matches(footing) < settings::kWarnMatched) return {warning(finding)};
+Objections unmatched_pairs(const Calibration&, const VerdictEvidence& evidence) {
+  const std::string finding = matches_text(evidence) + "; drive where the lidar sees walls on all sides";
+  if (has_few_matches(evidence)) return {refusal(finding)};
+  if (share_of_matches(evidence) < settings::kWarnMatched) return {warning(finding)};
   return {};
 }
 
-Objections contradicting_pairs(const Calibration&, const Footing& footing) {
+Objections contradicting_pairs(const Calibration&, const VerdictEvidence& evidence) {
   const double share =
-      static_cast<double>(footing.outliers) / static_cast<double>(std::max<std::size_t>(footing.pairs, 1));
+      static_cast<double>(evidence.outliers) / static_cast<double>(std::max<std::size_t>(evidence.pairs, 1));
   if (!(share > settings::kManyContradict)) return {};
-  const std::string finding = std::to_string(footing.outliers) + " of " + std::to_string(footing.pairs) +
+  const std::string finding = std::to_string(evidence.outliers) + " of " + std::to_string(evidence.pairs) +
                               " measured motions contradict what the others say of the wheels";
   if (!(share > settings::kTooManyContradict))
     return {{false, finding, share / settings::kManyContradict, true}};
-  if (names_no_cause(footing))
-    return {refusal("motions contradict each other, " + std::to_string(footing.outliers) +
-                    " of them, measured" + by_so_few(footing))};
+  if (names_no_cause(evidence))
+    return {refusal("motions contradict each other, " + std::to_string(evidence.outliers) +
+                    " of them, measured" + by_so_few(evidence))};
   return {refusal(finding +
                   ": one set of lengths does not describe this robot; check counts that get lost, slip, and "
                   "time stamps, and record again")};
 }
 
-Objections residual_beyond_noise(const Calibration& calibration, const Footing&) {
+Objections residual_beyond_noise(const Calibration& calibration, const VerdictEvidence&) {
   const ResidualReport& residual = calibration.residual;
   if (!residual.after || !residual.noise_floor) return {};
   constexpr std::array kComponents = {"in x of the sensor", "in y of the sensor", "in yaw"};
@@ -410,7 +410,7 @@ const MethodResult* method(const Calibration& calibration, const char* name) {
 }
 
 /// The closed form knows no effects: with some in the model both may be right.
-Objections estimators_apart(const Calibration& calibration, const Footing&) {
+Objections estimators_apart(const Calibration& calibration, const VerdictEvidence&) {
   const MethodResult* closed = method(calibration, "joint_closed_form");
   const MethodResult* joint = method(calibration, "joint");
   if (closed == nullptr || joint == nullptr || !calibration.effects.empty()) return {};
@@ -431,9 +431,9 @@ Objections estimators_apart(const Calibration& calibration, const Footing&) {
   return found;
 }
 
-Objections residual_in_rows(const Calibration& calibration, const Footing& footing) {
+Objections residual_in_rows(const Calibration& calibration, const VerdictEvidence& evidence) {
   if (!calibration.effects.empty() || calibration.unexplained) return {};
-  for (const ResidualAxis& axis : footing.axes)
+  for (const ResidualAxis& axis : evidence.axes)
     if (axis.runs < settings::kTooFewRuns)
       return {warning("the residual in " + axis.name + " keeps its sign for long (runs test " +
                       math::significant(axis.runs, 3) +
@@ -443,7 +443,7 @@ Objections residual_in_rows(const Calibration& calibration, const Footing& footi
 }
 
 /// The reader of the verdict sees that something is left without a name.
-Objections something_unexplained(const Calibration& calibration, const Footing&) {
+Objections something_unexplained(const Calibration& calibration, const VerdictEvidence&) {
   if (!calibration.unexplained) return {};
   std::string covariates;
   for (const std::string& one : calibration.unexplained->depends_on)
@@ -454,13 +454,13 @@ Objections something_unexplained(const Calibration& calibration, const Footing&)
                share > settings::kMostUnexplained ? share / settings::kMostUnexplained : 0.0)};
 }
 
-Objections remarks(const Calibration&, const Footing& footing) {
+Objections remarks(const Calibration&, const VerdictEvidence& evidence) {
   Objections found;
-  for (const std::string& remark : footing.remarks) found.push_back(warning(remark));
+  for (const std::string& remark : evidence.remarks) found.push_back(warning(remark));
   return found;
 }
 
-Objections clock_put_right(const Calibration& calibration, const Footing&) {
+Objections clock_put_right(const Calibration& calibration, const VerdictEvidence&) {
   Objections found;
   for (const Repair& repair : calibration.repairs)
     if (repair.what == kRepairedClock)
@@ -469,15 +469,15 @@ Objections clock_put_right(const Calibration& calibration, const Footing&) {
   return found;
 }
 
-Objections unsettled_fit(const Calibration&, const Footing& footing) {
-  if (footing.converged) return {};
+Objections unsettled_fit(const Calibration&, const VerdictEvidence& evidence) {
+  if (evidence.converged) return {};
   return {warning("the fit had not settled when its iterations ran out")};
 }
 
-/// Of a drive that is as it should be, next to nothing is left out.
-Objections much_left_out(const Calibration&, const Footing& footing) {
+/// Next to nothing is left out of a drive that is as it should be.
+Objections much_left_out(const Calibration&, const VerdictEvidence& evidence) {
   Objections found;
-  for (const Loss& loss : footing.losses) {
+  for (const Loss& loss : evidence.losses) {
     if (const auto refusing = too_much_left_out(loss))
       found.push_back(*refusing);
     else if (loss.share > settings::kWarnLeftOut)
@@ -497,12 +497,12 @@ constexpr std::array kSigns = {no_better_than_before, lengths,   contradicting_p
                                odometry_off,          still_off, estimators_apart,    something_unexplained};
 
 /// Each sign may have a harmless cause; many that are far beyond their limits have one in common.
-Objections several_signs(const Calibration& calibration, const Footing& footing) {
+Objections several_signs(const Calibration& calibration, const VerdictEvidence& evidence) {
   constexpr std::size_t kTold = 3;
   Objections signs;  // the weightiest of each rule
   double sum = 0.0;
   for (const auto& rule : kSigns) {
-    const Objections found = rule(calibration, footing);
+    const Objections found = rule(calibration, evidence);
     const auto most = std::max_element(found.begin(), found.end(),
                                        [](const auto& a, const auto& b) { return a.weight < b.weight; });
     if (most == found.end() || !(most->weight > 0.0)) continue;
@@ -554,9 +554,9 @@ constexpr std::array kRules = {
 
 }  // namespace
 
-std::optional<std::string> poor_matches(const Footing& footing) {
-  if (footing.unmatched + footing.stood > 0 && has_few_matches(footing)) return matches_text(footing);
-  return are_in_part(footing) ? std::optional(parts_text(footing)) : std::nullopt;
+std::optional<std::string> poor_matches(const VerdictEvidence& evidence) {
+  if (evidence.unmatched + evidence.stood > 0 && has_few_matches(evidence)) return matches_text(evidence);
+  return are_in_part(evidence) ? std::optional(parts_text(evidence)) : std::nullopt;
 }
 
 std::span<const VerdictRule> verdict_rules() { return kRules; }

@@ -23,14 +23,14 @@ struct Objection {
 struct VerdictRule {
   const char* name;
   const char* next;  ///< what to do where this rule weighs most
-  std::vector<Objection> (*objections)(const Calibration& calibration, const Footing& footing);
+  std::vector<Objection> (*objections)(const Calibration& calibration, const VerdictEvidence& evidence);
 };
 
 /// How few pairs of scans gave a motion, or a whole one, where that alone undoes a fit; nothing where they
 /// are enough.
-std::optional<std::string> poor_matches(const Footing& footing);
+std::optional<std::string> poor_matches(const VerdictEvidence& evidence);
 
-/// What to do where a recording lost much.
+/// Remedy where a recording lost much.
 inline constexpr const char* kMendLosses =
     "mend what sends these counts, stamps or scans: a second program on the topic, a counter that wraps "
     "early, "

@@ -20,7 +20,7 @@ bool shares_its_ground(const SearchResult& result, const std::shared_ptr<const v
   });
 }
 
-/// What was added last was just cross-validated.
+/// The effect added last was just cross-validated.
 bool may_eliminate(const SearchResult& result, const std::shared_ptr<const vehicle::Effect>& effect) {
   if (effect == result.model.effects.back()) return false;
   const auto is_it = [&](const auto& added) { return added.effect == effect; };
@@ -54,7 +54,7 @@ bool eliminate_one(const FitTask& task, double per_parameter, SearchResult& resu
   return false;
 }
 
-/// Of odometry over ten seconds with the model's effects; nullopt where the drive is too short for it.
+/// Error of odometry over ten seconds with the model's effects; nullopt where the drive is too short for it.
 std::optional<DriveError> open_loop_error(const FitTask& task, const FittedModel& model) {
   const JudgedModel judged{&model.fit, task.fixed(model.effects), model.effects};
   const auto errors = drive_errors(task.data, {}, nullptr, judged);
@@ -70,8 +70,8 @@ bool eliminate_superfluous(const FitTask& task, double per_parameter, SearchResu
   return has_changed;
 }
 
-std::optional<FreeTerm> free_term_instead_of(const FitTask& task, const FittedModel& model, std::size_t index,
-                                             const Candidate& candidate) {
+std::optional<FreeTerm> free_alternative_to(const FitTask& task, const FittedModel& model, std::size_t index,
+                                            const Candidate& candidate) {
   const auto without = without_effect(task, model, index, {});
   if (!without) return std::nullopt;
   auto dependence = in_best_shape(task, *without, *candidate.smooth, model.fit.noise);

@@ -1,5 +1,5 @@
-// What leaves the model again: what was added early and something added later explains better, names that a
-// free term of their own dependence shows to be wrong, and smooth terms that are not what is missing.
+// Terms that leave the model again: those added early that something added later explains better, names that
+// a free term of their own dependence shows to be wrong, and smooth terms that are not what is missing.
 #pragma once
 
 #include <optional>
@@ -27,8 +27,8 @@ struct FreeTerm {
 /// The candidate's smooth term in the name's place, if the name leaves more than a little to it and predicts
 /// held-out data worse.
 /// @param index of the name's effect in the model
-std::optional<FreeTerm> free_term_instead_of(const FitTask& task, const FittedModel& model, std::size_t index,
-                                             const Candidate& candidate);
+std::optional<FreeTerm> free_alternative_to(const FitTask& task, const FittedModel& model, std::size_t index,
+                                            const Candidate& candidate);
 
 /// A term of two covariates at once (a wheel that drags in slow turns to the right) lends part of itself to a
 /// term of either alone, which is wrong wherever the other differs: in another drive odometry is better

@@ -20,8 +20,8 @@ std::string key_of(const vehicle::Effect& effect) {
   return effect.name() + "/" + effect.parameters().front().name;
 }
 
-/// What distinguishes a basis from others of the same dependence that are candidates of their own; empty for
-/// all that are shapes of one dependence.
+/// Mark that distinguishes a basis from others of the same dependence that are candidates of their own; empty
+/// for all that are shapes of one dependence.
 constexpr auto kKindOf = []<typename Kind>(const Kind& basis) -> std::string {
   if constexpr (std::is_same_v<Kind, terms::Cycle>) return "/cycle " + std::to_string(basis.period);
   if constexpr (std::is_same_v<Kind, terms::Harmonics>) return "/harmonic " + std::to_string(basis.only);
@@ -111,7 +111,7 @@ bool must_be_worthwhile(const Candidate& candidate) {
 
 double largest_ratio(const Candidate& candidate) {
   if (must_be_worthwhile(candidate)) return settings::kWorthwhile;
-  // What comes back with each turn of a wheel cancels over ten seconds, however plain it is in between.
+  // An error that comes back with each turn of a wheel cancels over ten seconds, however plain in between.
   if (candidate.smooth && is_phase(candidate.smooth->dependence.covariate))
     return std::numeric_limits<double>::infinity();
   const bool will_be_used = candidate.effect->storage() == vehicle::Storage::host;

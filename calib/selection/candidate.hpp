@@ -1,4 +1,4 @@
-// What the search may add to the model, and what each has to meet.
+// Candidates that the search may add to the model, and what each has to meet.
 #pragma once
 
 #include <cstddef>

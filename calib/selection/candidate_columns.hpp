@@ -1,4 +1,4 @@
-// What candidates would change in the residual.
+// Changes that candidates would make in the residual.
 #pragma once
 
 #include <Eigen/Core>

@@ -18,9 +18,9 @@ bool is_clearly_better(const std::optional<HeldOut>& before, const std::optional
 /// before and is not any more; false when it was not known before.
 bool is_worse(const std::optional<HeldOut>& before, const std::optional<HeldOut>& after);
 
-/// Of `after` being better by chance: likelihood ratio of normal errors with the bounded RMS of each, pairs
-/// of `after` counted, against a chi-squared distribution with one degree of freedom. 1 when it is not
-/// better.
+/// Probability of `after` being better by chance: likelihood ratio of normal errors with the bounded RMS of
+/// each, pairs of `after` counted, against a chi-squared distribution with one degree of freedom. 1 when it
+/// is not better.
 double p_value_of(const HeldOut& before, const HeldOut& after);
 
 /// One parameter; the variance in the square of the value's unit.

@@ -54,7 +54,7 @@ std::optional<Gain> gain_over(const FitTask& task, const FittedModel& before, co
   return Gain{windows->without.rms_position(), mixed.rms_position(), compare(windows->without, mixed)};
 }
 
-/// What happens seldom shows only where a fit takes pairs for failed matches, and what always acts is drowned
+/// A rare error shows only where a fit takes pairs for failed matches, and one that always acts is drowned
 /// there: a candidate may pass by either.
 std::optional<Gain> best_gain(const FitTask& task, const FittedModel& before, const FittedModel& after,
                               const FoldFlags& selected, double largest_ratio) {

@@ -9,7 +9,7 @@
 
 namespace odomcalib::calib::selection {
 
-/// What speaks for an addition to the model.
+/// Evidence for an addition to the model.
 struct CrossValidation {
   double family_p_value = 1.0;
   double before = 0.0;  ///< held-out position error over ten seconds, m
@@ -17,7 +17,7 @@ struct CrossValidation {
   Improvement improvement;
 };
 
-/// What another model makes of held-out drives.
+/// Change of held-out drives by another model.
 struct DriveChange {
   std::optional<double> ratio;  ///< of the error over ten seconds; none where there are too few windows
   bool is_spoilt = false;       ///< full turns, straight metres or ten seconds grow worse by more than a

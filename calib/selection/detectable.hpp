@@ -1,4 +1,4 @@
-// What a recording would have shown.
+// Effects that a recording would have shown.
 #pragma once
 
 #include <vector>

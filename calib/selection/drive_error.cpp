@@ -43,7 +43,7 @@ std::vector<math::Pose> errors_of(std::span<const measurement::FitData> data,
   return errors;
 }
 
-/// Which number of a pose error counts, and its variance by the noise model.
+/// The number of a pose error that counts, and its variance by the noise model.
 enum class Part { along, position, heading };
 
 double square_of(Part part, const math::Pose& e) {

@@ -1,5 +1,5 @@
-// What a user feels: the error of dead reckoning over a metre, over a full turn and over ten seconds, before
-// and after calibration, on data not used in the fit.
+// The error that a user feels: that of dead reckoning over a metre, over a full turn and over ten seconds,
+// before and after calibration, on data not used in the fit.
 #pragma once
 
 #include <span>

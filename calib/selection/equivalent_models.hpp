@@ -1,4 +1,4 @@
-// Which candidates the data cannot separate.
+// Candidates that the data cannot separate.
 #pragma once
 
 #include <string>

@@ -111,7 +111,7 @@ class Chain {
   math::Pose end_;
 };
 
-/// Of how well places are known the wheels say nothing.
+/// The wheels say nothing of how well places are known.
 math::Pose at_rest(double /*time*/) { return {}; }
 
 /// By the places of the scans about both ends.

@@ -24,8 +24,8 @@ struct EvaluationWindow {
   Eigen::Matrix3d covariance;  ///< of the base's motion as the noise model has it: reference and wheels
 };
 
-/// What the reference says of the sensor's motion over a window, in its frame at the begin: places in a map,
-/// where there are any, or else the chain.
+/// Motion of the sensor over a window by the reference, in its frame at the begin: places in a map, where
+/// there are any, or else the chain.
 /// @param wheels of the model that is judged by it (see mean_place)
 math::Pose measured_motion(const EvaluationWindow& window, const measurement::FitData& data,
                            const measurement::PathOfWheels& wheels);

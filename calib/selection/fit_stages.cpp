@@ -68,15 +68,15 @@ bool has_plain_value(const FittedModel& model, std::size_t effect) {
 
 }  // namespace
 
-estimation::Fit even_out_scans(estimation::Fit fit, const estimation::Settling& how) {
+estimation::Fit choose_scan_stamps(estimation::Fit fit, const estimation::Settling& how) {
   if (fit.failure || !fit.dataset.reference_is_scans()) return fit;
   const auto even = with_even_scans(fit);
   if (!even) return fit;
   return measure_and_settle(with_scans_of(std::move(fit.dataset), *even), std::move(fit.model), how);
 }
 
-estimation::Fit let_scans_sweep(estimation::Fit fit, const terms::Request& request,
-                                const estimation::Settling& how) {
+estimation::Fit choose_sweep_timing(estimation::Fit fit, const terms::Request& request,
+                                    const estimation::Settling& how) {
   if (fit.failure || !fit.dataset.reference_is_scans()) return fit;
   const auto sweeping = ingest::with_sweeps(fit.dataset.recordings);
   if (!sweeping) return fit;

@@ -10,13 +10,13 @@ namespace odomcalib::calib::selection {
 
 /// Scans that were taken evenly and stamped unevenly are measured anew, at even times. Any other fit, and one
 /// that failed, goes on as it is.
-estimation::Fit even_out_scans(estimation::Fit fit, const estimation::Settling& how);
+estimation::Fit choose_scan_stamps(estimation::Fit fit, const estimation::Settling& how);
 
 /// Scans that do not say when each beam was sent are taken for sweeps of a turning head if that explains the
 /// motion clearly better. Any other fit, and one that failed, goes on as it is.
 /// @param request that the fit began with
-estimation::Fit let_scans_sweep(estimation::Fit fit, const terms::Request& request,
-                                const estimation::Settling& how);
+estimation::Fit choose_sweep_timing(estimation::Fit fit, const terms::Request& request,
+                                    const estimation::Settling& how);
 
 /// Poses of the base may be those of a marker beside the middle of the axle, which in turns looks like a base
 /// that moves sideways: where it plainly sits elsewhere, its place is fitted, too. Any other fit, and one
@@ -30,8 +30,8 @@ estimation::Settling settling(bool may_prune, const measurement::Progress& progr
 /// The model without parts of the clock that are idle (criterion.hpp), as it is to be fitted next.
 vehicle::VehicleModel without_idle_clocks(const estimation::Fit& fit);
 
-/// What an idle delay stood for may have got its own name: it leaves the model, or stays without being
-/// reported where it is plain but short.
+/// An idle delay leaves the model, or stays without being reported where it is plain but short: what it stood
+/// for may have got its own name.
 SearchResult without_idle_delay(const FitTask& task, SearchResult found);
 
 }  // namespace odomcalib::calib::selection

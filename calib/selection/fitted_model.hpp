@@ -17,7 +17,7 @@ struct FittedModel {
   [[nodiscard]] Eigen::VectorXd base() const { return fit.parameters.head<vehicle::kBaseCount>(); }
 };
 
-/// What the search fits: recordings, which base parameters stay as they are, and the rules that hold.
+/// Task of a fit in the search: recordings, which base parameters stay as they are, and the rules that hold.
 struct FitTask {
   std::span<const measurement::FitData> data;
   std::vector<bool> base_fixed;

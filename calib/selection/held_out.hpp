@@ -40,12 +40,12 @@ std::vector<HeldOutError> held_out_errors(std::span<const measurement::FitData> 
 std::optional<HeldOut> held_out_residual(const std::vector<HeldOutError>& errors,
                                          const std::vector<HeldOutError>& other);
 
-/// Of one model alone.
+/// Held-out residual of one model alone.
 std::optional<HeldOut> held_out_residual(std::span<const measurement::FitData> data,
                                          const vehicle::EffectList& effects, const estimation::FitResult& fit,
                                          const std::vector<bool>& fixed);
 
-/// Of a fit to its own dataset; nullopt also where it failed.
+/// Held-out residual of a fit to its own dataset; nullopt also where it failed.
 std::optional<HeldOut> held_out_residual(const estimation::Fit& fit);
 
 }  // namespace odomcalib::calib::selection

@@ -64,7 +64,7 @@ class Changes {
     all_.emplace_back(change, motion);
     total_ += motion;
   }
-  /// What of the change the length itself may have taken over.
+  /// The part of the change that the length itself may have taken over.
   /// @param two_states the change from one to the other; otherwise the least of the changes' sizes that all
   /// but a tenth of the motion exceed on one side of zero
   [[nodiscard]] double unknown(bool two_states) {
@@ -137,7 +137,7 @@ std::vector<Reshaped> reshaped(const FitTask& task, const Reshaped& now,
   return all;
 }
 
-const Reshaped& most_sensible_event(const std::vector<Reshaped>& shapes, double enough) {
+const Reshaped& median_threshold_of(const std::vector<Reshaped>& shapes, double enough) {
   std::vector<const Reshaped*> alike;
   for (const Reshaped& shape : shapes)
     if (takes_an_event(shape.smooth) && shape.model.fit.cost < enough) alike.push_back(&shape);
@@ -153,7 +153,7 @@ std::optional<Reshaped> in_best_shape(const FitTask& task, const FittedModel& mo
                                       const terms::SmoothTerm& smooth,
                                       const std::vector<measurement::NoiseModel>& noise) {
   std::vector<terms::SmoothTerm> shapes = other_shapes(smooth, task.models());
-  // What is as plain as a name is no evidence against it.
+  // A shape that is as plain as a name is no evidence against it.
   std::erase_if(shapes, [&](const terms::SmoothTerm& shape) { return is_plainer(shape, smooth); });
   shapes.push_back(smooth);
   std::optional<Reshaped> best;
@@ -172,8 +172,8 @@ std::optional<Reshaped> in_best_shape(const FitTask& task, const FittedModel& mo
 bool explains_nearly_all(const FitTask& task, const FittedModel& named, std::size_t index,
                          const FittedModel& free) {
   const auto without = without_effect(task, named, index, named.fit.noise);
-  return without &&
-         without->fit.cost - named.fit.cost > settings::kNearlyAll * (without->fit.cost - free.fit.cost);
+  return without && without->fit.cost - named.fit.cost >
+                        settings::kNameShareOfSmooth * (without->fit.cost - free.fit.cost);
 }
 
 double effective_parameters(const estimation::FitResult& fit) {
@@ -203,10 +203,10 @@ Eigen::VectorXd uncertainty_of_zero(const FitTask& task, const FittedModel& mode
                                     const terms::SmoothTerm& smooth) {
   Eigen::VectorXd uncertainty = Eigen::VectorXd::Zero(vehicle::kBaseCount);
   const bool leaves_mean = leaves_mean_to_wheels(smooth, task.models());
-  // What was kept of the past has no natural zero either: neither side of it is the robot as it was measured.
+  // A memory of the past has no natural zero either: neither side of it is the robot as it was measured.
   if (smooth.mean.empty() && !is_memory(smooth.dependence.covariate) && !leaves_mean) return uncertainty;
   const Eigen::VectorXd own = model.fit.parameters.tail(static_cast<Eigen::Index>(function_count(smooth)));
-  // What changes as the day goes is often right at one end of it.
+  // A term that changes as the day goes is often right at one end of it.
   const bool goes_with_time = smooth.dependence.covariate == vehicle::Covariate::time;
   const double spread =
       (goes_with_time ? terms::half_span_of : terms::spread_of)(smooth, vehicle::as_span(own), task.models());

@@ -23,9 +23,9 @@ std::vector<Reshaped> reshaped(const FitTask& task, const Reshaped& now,
 /// `enough`: the middle of what the events of this drive leave open. Where no stop was too short the longest,
 /// so that nothing is made up of stops shorter than any that was seen.
 /// @param shapes of one smooth term; one that takes an event is below
-const Reshaped& most_sensible_event(const std::vector<Reshaped>& shapes, double enough);
+const Reshaped& median_threshold_of(const std::vector<Reshaped>& shapes, double enough);
 
-/// What a parameter has to take off -2 log L when it is the question whether what it belongs to is there
+/// Decrease of -2 log L that a parameter needs when it is the question whether what it belongs to is there
 /// (Schwarz, Ann. Statist. 6, 1978); settings::kAkaike when that has passed cross-validation.
 double schwarz(const estimation::FitResult& fit);
 
@@ -62,8 +62,8 @@ Eigen::VectorXd uncertainty_of_zero(const FitTask& task, const FittedModel& mode
 Eigen::VectorXd uncertainty_of_extrapolation(const FitTask& task, const FittedModel& model,
                                              const std::vector<std::size_t>& dependence);
 
-/// What the base parameters would be with the other shapes in which an effect that scales lengths is tried,
-/// each by the root of its probability beside all of them (Hoeting et al., Stat. Sci. 14, 1999, eq. 5).
+/// Changes of the base parameters with the other shapes in which an effect that scales lengths is tried, each
+/// by the root of its probability beside all of them (Hoeting et al., Stat. Sci. 14, 1999, eq. 5).
 /// @param index of the effect in the model
 std::vector<Eigen::VectorXd> uncertainties_of_shape(const FitTask& task, const FittedModel& model,
                                                     std::size_t index);

@@ -96,7 +96,7 @@ void refine(std::span<terms::LidarFinding> findings, const std::vector<measureme
 
 using Findings = std::vector<terms::LidarFinding>;
 
-/// What stays the same from one correction to the next.
+/// Everything that stays the same from one correction to the next.
 struct Task {
   ingest::Recordings uncorrected;
   const terms::Request& request;
@@ -123,7 +123,7 @@ Findings wrong_angles(const estimation::Fit& fit, const Task& task) {
   return found;
 }
 
-/// What pairs of scans show, a map or its absence known.
+/// Findings from pairs of scans, a map or its absence known.
 Findings wrong_scans(const LidarCorrection& now, const Task& task) {
   const auto pairs = heading_pairs(now.fit);
   if (task.is_requested()) return fit_lidar(pairs, task.request.lidar_effects);

@@ -187,7 +187,7 @@ bool is_decisive(const LidarScores::Score& score, std::size_t family) {
   return tail * static_cast<double>(family) < settings::kDecisive;
 }
 
-/// What one pair's distances would gain by these values.
+/// Gain of one pair's distances by these values.
 double gain_of_columns(const PairScore& pair, const std::vector<Eigen::Index>& columns,
                        const Eigen::VectorXd& values) {
   return 2.0 * values.dot(pair.gradient(columns)) - values.dot(part(pair.gram, columns, columns) * values);

@@ -39,7 +39,7 @@ class LidarScores {
   [[nodiscard]] const std::vector<LidarColumns>& candidates() const { return candidates_; }
   [[nodiscard]] std::size_t pair_count() const { return pairs_.size(); }
 
-  /// Of one candidate beside those already accepted.
+  /// Score of one candidate beside those already accepted.
   struct Score {
     double statistic = 0.0;  ///< chi-squared, errors that neighbouring points share taken into account
     Eigen::Index degrees = 0;
@@ -57,7 +57,7 @@ class LidarScores {
   [[nodiscard]] HeldOut held_out(const std::vector<std::size_t>& accepted, std::size_t candidate) const;
 
  private:
-  /// Of the whitened distances that the accepted leave.
+  /// Variance of the whitened distances that the accepted leave.
   [[nodiscard]] double variance(const std::vector<Eigen::Index>& taken) const;
   [[nodiscard]] std::vector<Eigen::Index> columns(const std::vector<std::size_t>& effects) const;
 

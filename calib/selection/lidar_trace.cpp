@@ -85,7 +85,7 @@ class LidarTrace {
     return false;
   }
 
-  /// What is too small as a free term is no larger under a name that explains too little of it.
+  /// An error that is too small as a free term is no larger under a name that explains too little of it.
   void refuse_lesser_names(std::size_t smooth, const std::vector<LidarScores::Score>& scores) {
     if (effect(smooth).is_named()) return;
     for (std::size_t c = 0; c < scores.size(); ++c)
@@ -167,7 +167,7 @@ class LidarTrace {
   std::vector<terms::LidarFinding> evidence_;
 };
 
-/// Of all errors that are left in the scans.
+/// Slope of all errors that are left in the scans.
 double slope(const std::vector<terms::LidarFinding>& findings, double bearing, double range) {
   const double step = settings::kHalfStep * range;
   double rise = 0.0;

@@ -26,7 +26,7 @@ struct Binned {
   std::vector<double> value;     ///< of each pair
 };
 
-/// Which of `slices` equally filled slices each value lies in; equal values lie in the same.
+/// The slice, of `slices` equally filled ones, that each value lies in; equal values lie in the same.
 std::vector<std::size_t> sliced(const std::vector<double>& values, std::size_t slices) {
   std::vector<double> sorted = values;
   std::sort(sorted.begin(), sorted.end());
@@ -88,7 +88,7 @@ std::vector<Binned> all_covariates(std::span<const measurement::FitData> data) {
   return all;
 }
 
-/// Of a rate of `part` in `whole`, at its maximum.
+/// Log likelihood of a rate of `part` in `whole`, at its maximum.
 double log_likelihood(double part, double whole) {
   return part > 0.0 && part < whole
              ? part * std::log(part / whole) + (whole - part) * std::log(1.0 - part / whole)
@@ -155,7 +155,7 @@ class Tracer {
     return gains;
   }
 
-  /// That events strewn over the pairs at random gain as much by any covariate.
+  /// Probability that events strewn over the pairs at random gain as much by any covariate.
   double chance_of(double best) {
     std::mt19937 engine(kOutlierSeed);
     int as_good = 0;
@@ -171,7 +171,7 @@ class Tracer {
     return (1.0 + as_good) / (1.0 + settings::kOutlierDraws);
   }
 
-  /// Of the bins with unusually many events.
+  /// Sets the range of the bins with unusually many events.
   void set_range(std::size_t v, OutlierTrace& trace) const {
     const Counts events = counted(covariates_[v], events_);
     const double usual = static_cast<double>(events_.size()) / static_cast<double>(order_.size());
@@ -193,7 +193,7 @@ class Tracer {
   std::vector<std::size_t> order_;
 };
 
-/// Whose fault they are, as far as a map shows.
+/// Cause of the outliers, as far as a map shows.
 std::string to_text(const OutlierCause& cause) {
   if (cause.confirmed == 0) return "";
   std::string text = "; the map confirms " + std::to_string(cause.confirmed) + " of " +

@@ -1,5 +1,5 @@
 // Pairs of scans that no model in the search explains: a fit leaves them out, so that no score sees them.
-// What they have in common says what the robot, the floor or a clock did there.
+// Their common features say what the robot, the floor or a clock did there.
 #pragma once
 
 #include <cstddef>

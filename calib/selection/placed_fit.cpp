@@ -49,7 +49,7 @@ PlacedData with_places(measurement::FitData data, const measurement::ScanPath& p
   return {std::move(data), slides};
 }
 
-/// Of the parameters, those that are too small to be reported.
+/// Flags of the parameters that are too small to be reported.
 std::vector<bool> nuisance_parameters(const SearchResult& found) {
   std::vector<bool> nuisance(vehicle::kBaseCount, false);
   for (const auto& effect : found.model.effects) {
@@ -60,7 +60,7 @@ std::vector<bool> nuisance_parameters(const SearchResult& found) {
   return nuisance;
 }
 
-/// What is too small to be reported, as a millisecond's delay, is too small to speak against places.
+/// A parameter too small to be reported, as a millisecond's delay, is too small to speak against places.
 bool improves(const estimation::PathFit& path, const SearchResult& found) {
   const estimation::FitResult& fit = found.model.fit;
   const std::vector<bool> nuisance = nuisance_parameters(found);

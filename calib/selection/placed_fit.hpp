@@ -1,4 +1,4 @@
-// What the places of all scans in a map do for a fit.
+// Use of the places of all scans in a map for a fit.
 #pragma once
 
 #include "calib/estimation/fit.hpp"

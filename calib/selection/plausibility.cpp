@@ -27,7 +27,8 @@ std::string outside(const vehicle::EffectParameter& parameter, double value) {
 
 bool moves_lengths(const estimation::FitResult& before, const estimation::FitResult& after) {
   for (const auto k : {vehicle::kLeftRadius, vehicle::kRightRadius, vehicle::kTrackWidth})
-    if (std::abs(after.parameters(k) - before.parameters(k)) > settings::kFarOff * before.parameters(k))
+    if (std::abs(after.parameters(k) - before.parameters(k)) >
+        settings::kMaxLengthShift * before.parameters(k))
       return true;
   return false;
 }
@@ -101,7 +102,7 @@ bool spoils_base(const vehicle::Effect& effect, const estimation::FitResult& bef
                                                                     : settings::kWidenedByCorrection;
   for (const auto k : {vehicle::kLeftRadius, vehicle::kRightRadius, vehicle::kTrackWidth}) {
     const double deviation = std::sqrt(after.covariance(k, k));
-    if (deviation > settings::kHarmless * after.parameters(k) &&
+    if (deviation > settings::kNegligibleLengthStd * after.parameters(k) &&
         deviation > most * std::sqrt(before.covariance(k, k)))
       return true;
   }

@@ -8,7 +8,7 @@
 
 namespace odomcalib::calib::selection {
 
-/// Which parameter of the effect, the fit's last, is outside its physical bounds; empty when none is.
+/// The parameter of the effect, the fit's last, that is outside its physical bounds; empty when none is.
 std::string impossibility(const vehicle::Effect& effect, const estimation::FitResult& fit);
 
 /// Why the effect's values, the fit's last, make no sense together; empty when they do.

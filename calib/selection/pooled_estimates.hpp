@@ -21,7 +21,7 @@ class Pool {
   Eigen::VectorXd weighted_;
 };
 
-/// What one recording alone says.
+/// Estimates from one recording alone.
 struct OwnValues {
   std::size_t recording;
   Eigen::VectorXd value;
@@ -34,8 +34,8 @@ struct OwnValues {
 /// 1954).
 double cochran(const std::vector<OwnValues>& estimates);
 
-/// Of one parameter, beyond what the recordings' own deviations make (R. DerSimonian and N. Laird, Controlled
-/// Clinical Trials 7, 1986); 0 where chance explains the differences.
+/// Variance of one parameter, beyond what the recordings' own deviations make (R. DerSimonian and N. Laird,
+/// Controlled Clinical Trials 7, 1986); 0 where chance explains the differences.
 double variance_between(const std::vector<OwnValues>& estimates, Eigen::Index parameter);
 
 }  // namespace odomcalib::calib::selection

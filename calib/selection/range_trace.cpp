@@ -46,7 +46,7 @@ struct Misfit {
   double readings = 0.0;
 };
 
-/// Of one scan, placed anew.
+/// Misfit of one scan, placed anew.
 Misfit misfit_of(const Adjusted& state, const std::vector<measurement::Beam>& beams,
                  const math::Pose& guess) {
   const measurement::Place place = place_scan(state.map, beams, guess, state.options);
@@ -95,7 +95,7 @@ terms::LidarFinding range_finding(terms::LidarEffectPtr effect, double p_value, 
           validation.after};
 }
 
-/// What allowing for the incidence would change counts as unknown too.
+/// The change that allowing for the incidence would make counts as unknown too.
 double deviation_of_offset(const measurement::RangeEvidence& left) {
   return std::hypot(left.offset_alone_deviation, left.values(0) - left.offset_alone);
 }

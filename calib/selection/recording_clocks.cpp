@@ -20,7 +20,7 @@ using vehicle::ClockPart;
 constexpr std::array kParts = {ClockPart::offset, ClockPart::rate};
 constexpr auto kClock = static_cast<Eigen::Index>(kParts.size());
 
-/// Of a sensor's clock against that of the encoders: s in the middle of the recording, s/s.
+/// Offset and rate of a sensor's clock against that of the encoders: s in the middle of the recording, s/s.
 using Clock = Eigen::Vector2d;
 
 Clock clock_of(const vehicle::VehicleModel& model) {

@@ -1,5 +1,5 @@
-// What is each recording's own: the clock of the sensor, where it was set anew or aligned by hand from one
-// recording to the next.
+// Each recording's own clock of the sensor, where it was set anew or aligned by hand from one recording to
+// the next.
 #pragma once
 
 #include "calib/estimation/fit.hpp"

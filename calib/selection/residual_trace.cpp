@@ -94,7 +94,7 @@ constexpr std::array kCovariates = {
     Covariate{"heading", "rad", Covariate::middle, [](const vehicle::StepContext& c) { return c.heading; }},
 };
 
-/// What a residual is divided by: nothing, the distance driven, or the angle turned.
+/// Divisor of a residual: nothing, the distance driven, or the angle turned.
 struct Divisor {
   const char* length_unit;
   const char* angle_unit;

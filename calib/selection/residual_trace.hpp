@@ -1,4 +1,4 @@
-// What an effect looks like in the data: residual with and without it, against the covariate it acts by.
+// Trace of an effect in the data: residual with and without it, against the covariate it acts by.
 #pragma once
 
 #include <span>

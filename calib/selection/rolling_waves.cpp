@@ -114,7 +114,7 @@ class Turning {
   Few cos_, sin_, step_cos_, step_sin_;
 };
 
-/// What a wave of each frequency would explain.
+/// The evidence for a wave of each frequency.
 class Periodogram {
  public:
   /// @param steady derivative by a defect that is the same everywhere, in its first column

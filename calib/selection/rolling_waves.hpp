@@ -1,5 +1,5 @@
-// What repeats itself with the way that something has rolled, as a caster, a belt or a wheel of a gear does,
-// or in time, more often than periods are tried one by one.
+// Errors that repeat themselves with the way that something has rolled, as a caster, a belt or a wheel of a
+// gear does, or in time, more often than periods are tried one by one.
 #pragma once
 
 #include <span>

@@ -42,8 +42,10 @@ constexpr std::array kTable = {
     RuleRow{Rule::other_shape, "other_shape", "refusing terms that were found too coarse"},
     RuleRow{Rule::best_shape, "best_shape", "shapes too coarse or too fine"},
     RuleRow{Rule::few_bends, "few_bends", "bends that stand for single manoeuvres"},
-    RuleRow{Rule::middle_event, "middle_event", "thresholds at the end of what the drive leaves open"},
-    RuleRow{Rule::shape_has_a_price, "shape_has_a_price", "names that win by their choice of shapes"},
+    RuleRow{Rule::median_threshold, "median_threshold",
+            "thresholds at the end of what the drive leaves open"},
+    RuleRow{Rule::hyperparameter_penalty, "hyperparameter_penalty",
+            "names that win by their choice of shapes"},
 };
 static_assert(kTable.size() == kRules);
 

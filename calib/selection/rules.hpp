@@ -11,13 +11,13 @@
 namespace odomcalib::calib::selection {
 
 enum class Rule : std::size_t {
-  // What a candidate must be to be plausible.
+  // Conditions for a candidate to be plausible.
   sway_above_ticks,
   physical_range,
   size_that_matters,
   no_contradiction,
   base_determined,
-  // What its gain must be.
+  // Conditions on its gain.
   worthwhile_gain,
   certain_gain,
   choice_held_out,
@@ -25,7 +25,7 @@ enum class Rule : std::size_t {
   drives_not_worse,
   enough_explained,
   stricter_level,
-  // Which of several candidates is meant.
+  // Choice of the one that is meant among several candidates.
   clock_before_name,
   unnamed_clock,
   names_before_smooth_terms,
@@ -44,10 +44,10 @@ enum class Rule : std::size_t {
   other_shape,
   best_shape,
   few_bends,
-  middle_event,
-  shape_has_a_price,
+  median_threshold,
+  hyperparameter_penalty,
 };
-inline constexpr std::size_t kRules = static_cast<std::size_t>(Rule::shape_has_a_price) + 1;
+inline constexpr std::size_t kRules = static_cast<std::size_t>(Rule::hyperparameter_penalty) + 1;
 
 /// One row of the table.
 struct RuleRow {

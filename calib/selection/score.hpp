@@ -35,8 +35,8 @@ double significance(double statistic, Eigen::Index degrees);
 /// Family-wise significance: block scores of 5 s get random signs (Rademacher), 1999 draws with a fixed seed;
 /// the largest significance of each draw is compared, so that correlation between candidates, heavy tails and
 /// what autocorrelation is left are respected.
-/// What is kept of a candidate does not grow with its columns: of more than a thousand a few are looked at
-/// again, and theirs are made again.
+/// The memory kept for a candidate does not grow with its columns: of more than a thousand a few are looked
+/// at again, and theirs are made again.
 class ScoreTable {
  public:
   /// @param task, model must outlive the table. It keeps the candidates: the search may give one another

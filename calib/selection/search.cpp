@@ -38,9 +38,9 @@ class Search {
   }
 
   SearchResult run() {
-    go_on(0.0, 0.5);
+    run_steps(0.0, 0.5);
     propose_waves();
-    go_on(0.5, 1.0);
+    run_steps(0.5, 1.0);
     eliminate_unhelpful_smooths();
     for (std::size_t e = 0; e < result_.model.effects.size(); ++e) {
       result_.model_uncertainties.push_back(
@@ -56,7 +56,7 @@ class Search {
  private:
   [[nodiscard]] bool has(Rule rule) const { return task_.rules.has(rule); }
 
-  /// That candidates are tested on.
+  /// The model that candidates are tested on.
   [[nodiscard]] const FittedModel& basis() const { return round_->basis(); }
 
   void add_model_uncertainties(const std::vector<Eigen::VectorXd>& model_uncertainties) {
@@ -80,7 +80,7 @@ class Search {
   }
 
   /// @param from, to shares of the whole search
-  void go_on(double from, double to) {
+  void run_steps(double from, double to) {
     for (int step = 0; step < settings::kMostSteps; ++step) {
       progress_(from + (to - from) * step / settings::kMostSteps);
       if (!advance()) break;
@@ -89,7 +89,7 @@ class Search {
 
   /// One step; false when nothing more is justified.
   bool advance() {
-    if (has_changed_) look_again();
+    if (has_changed_) rescore();
     const auto smooth = best_smooth(*round_, result_);
     const auto name = may_add_name() ? best_name_beside(smooth, *round_, result_) : std::nullopt;
     if (const auto late = name ? unnoticed_clock(*name) : std::nullopt; late && has(Rule::clock_before_name))
@@ -105,19 +105,19 @@ class Search {
     auto clock = clocks.empty() ? std::nullopt : round_->refit(clocks.front());
     if (!clock || !is_plain_but_small(candidates_[clocks.front()], clock->model.fit)) return std::nullopt;
     const double by_clock = basis().fit.cost - clock->model.fit.cost;
-    const bool is_much = by_clock > settings::kMuchOfName * (basis().fit.cost - name.model.fit.cost);
+    const bool is_much = by_clock > settings::kClockShareOfName * (basis().fit.cost - name.model.fit.cost);
     return is_much ? std::move(clock) : std::nullopt;
   }
 
-  /// What repeats itself along the floor or as something rolls, when nothing else is left to say.
+  /// Waves along the floor or of something that rolls, when nothing else is left to say.
   void propose_waves() {
     candidates_ = floor_waves(task_.models());
     for (const Candidate& wave : rolling_waves(task_.data, result_.model)) candidates_.push_back(wave);
-    begin_again();
+    replace_candidates();
   }
 
   /// With other candidates.
-  void begin_again() {
+  void replace_candidates() {
     round_.reset();
     has_changed_ = true;
   }
@@ -131,7 +131,7 @@ class Search {
   }
 
   /// Scores of all that is left, on the model as it is now.
-  void look_again() {
+  void rescore() {
     exclude_hopeless_waves();
     std::erase_if(candidates_, [](const Candidate& c) { return c.excluded; });
     round_.emplace(task_,
@@ -263,8 +263,8 @@ class Search {
            std::isfinite(largest_ratio(candidate));
   }
 
-  /// Of a smooth term that odometry would use, whose gain must show over ten seconds; where the reference is
-  /// too broken for that, its score must be decisive.
+  /// A smooth term that odometry would use must show its gain over ten seconds; where the reference is too
+  /// broken for that, its score must be decisive.
   [[nodiscard]] bool may_be_chance(const Candidate& candidate, const CrossValidation& validation) const {
     if (!odometry_uses(candidate) || result_.owner_of(candidate.smooth->dependence)) return false;
     return has_drives(validation) ? !validation.improvement.is_plain()
@@ -273,7 +273,7 @@ class Search {
 
   void adopt(FittedModel model) {
     result_.model = std::move(model);
-    start_again();
+    mark_changed();
   }
 
   /// All that odometry would follow and that has no name, or none.
@@ -303,7 +303,7 @@ class Search {
   }
 
   /// From the model as it is now.
-  void start_again() {
+  void mark_changed() {
     has_changed_ = true;
     unconfirmed_.clear();
   }
@@ -319,7 +319,7 @@ class Search {
     });
     if (smooths.empty()) return std::nullopt;
     const std::size_t last = name.model.effects.size() - 1;
-    const auto free = free_term_instead_of(task_, name.model, last, candidates_[smooths.front()]);
+    const auto free = free_alternative_to(task_, name.model, last, candidates_[smooths.front()]);
     return free && has(Rule::name_against_smooth_term) ? std::optional(smooths.front()) : std::nullopt;
   }
 
@@ -394,7 +394,7 @@ class Search {
     const auto& effects = result_.model.effects;
     const auto place = std::find(effects.begin(), effects.end(), name) - effects.begin();
     auto free =
-        free_term_instead_of(task_, result_.model, static_cast<std::size_t>(place), candidates_[candidate]);
+        free_alternative_to(task_, result_.model, static_cast<std::size_t>(place), candidates_[candidate]);
     if (!free) return;
     free->validation.family_p_value = round_->score(candidate).family_p_value;
     result_.forget(name);
@@ -405,10 +405,10 @@ class Search {
     select_hyperparameters_of_newest(task_, result_);
   }
 
-  /// What an earlier finding or smooth term explained may belong to what was just added.
+  /// An error that an earlier finding or smooth term explained may belong to what was just added.
   void drop_superfluous() {
     if (has(Rule::backward_elimination) && eliminate_superfluous(task_, schwarz(basis().fit), result_))
-      start_again();
+      mark_changed();
   }
 
   /// Larger than usual if the data insist; about its mean where the drive cannot separate that from slow
@@ -432,7 +432,7 @@ class Search {
   std::optional<SearchRound> round_;
   bool has_changed_ = true;  ///< the model or the candidates, since the round began
   SearchResult result_;
-  /// What plausible names and plain smooth terms would make of the base parameters that the last model could
+  /// Changes of the base parameters by plausible names and plain smooth terms that the last model could
   /// neither show nor rule out.
   std::vector<Eigen::VectorXd> unconfirmed_;
 };

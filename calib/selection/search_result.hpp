@@ -1,4 +1,4 @@
-// What the search has found so far.
+// Result of the search so far.
 #pragma once
 
 #include <memory>
@@ -47,7 +47,7 @@ struct SearchResult {
   vehicle::EffectList nuisance;        ///< in the model, but too small to be reported
   std::vector<Considered> considered;  ///< in the order tried
   std::vector<Detectable> detectable;  ///< of the names that are not in the model
-  /// What nobody knows about a function is unknown of the base parameters too: by how much they move with
+  /// Uncertainty of the base parameters by what nobody knows about a function: how much they move with
   /// another shape, another zero or another name of the set, by extrapolation to where no effect is, and with
   /// what was too small to be reported.
   std::vector<Eigen::VectorXd> model_uncertainties;

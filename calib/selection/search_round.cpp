@@ -21,7 +21,7 @@ double level(const Candidate& candidate, const SearchResult& found, const RuleSe
   return is_stricter ? settings::kNamedLevel : settings::kUnnamedLevel;
 }
 
-/// What the free smooth terms explain of those of a name's dependences that a finding has already.
+/// Sum explained by the free smooth terms on those of a name's dependences that a finding has already.
 double explained_by_smooths(const std::vector<vehicle::Dependence>& dependences, const SearchRound& round,
                             const SearchResult& found) {
   double all = 0.0;
@@ -33,15 +33,16 @@ double explained_by_smooths(const std::vector<vehicle::Dependence>& dependences,
   return all;
 }
 
-/// What a finding leaves on its own dependence is the rest of its function, unless a second name explains
-/// nearly all that a free smooth term would.
+/// The error that a finding leaves on its own dependence is the rest of its function, unless a second name
+/// explains nearly all that a free smooth term would.
 bool is_rest_of_a_named_term(std::size_t name, const SearchRound& round, const SearchResult& found) {
   const std::vector<vehicle::Dependence> dependences = round.candidate(name).effect->dependences();
   if (std::none_of(dependences.begin(), dependences.end(), [&](const vehicle::Dependence& dependence) {
         return found.owner_of(dependence) != nullptr;
       }))
     return false;
-  return round.score(name).statistic < settings::kNearlyAll * explained_by_smooths(dependences, round, found);
+  return round.score(name).statistic <
+         settings::kNameShareOfSmooth * explained_by_smooths(dependences, round, found);
 }
 
 /// Joint refits of the most promising names on the noise model of the current fit.
@@ -83,7 +84,8 @@ std::optional<Trial> SearchRound::refit(std::size_t candidate,
   if (!model) return std::nullopt;
   const double gain =
       basis_.fit.cost - model->fit.cost - penalty(count_sizes(*effect)) -
-      (has_textbook_shape(effect) || !task_.rules.has(Rule::shape_has_a_price) ? 0.0 : settings::kAkaike);
+      (has_textbook_shape(effect) || !task_.rules.has(Rule::hyperparameter_penalty) ? 0.0
+                                                                                    : settings::kAkaike);
   return Trial{candidate, std::move(*model), gain};
 }
 
@@ -128,7 +130,7 @@ bool SearchRound::smooth_beats(std::size_t smooth, std::size_t name) const {
   const double of_best_shape = score(by_score(has_key_of_name).front()).statistic;
   const double of_smooth = score(smooth).statistic;
   return !(same_ground && (score(name).statistic > settings::kSameDependence * of_smooth ||
-                           of_best_shape > settings::kNearlyAll * of_smooth));
+                           of_best_shape > settings::kNameShareOfSmooth * of_smooth));
 }
 
 std::vector<std::size_t> SearchRound::competitors_of(const Trial& best) const {

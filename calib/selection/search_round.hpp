@@ -23,7 +23,7 @@ struct Trial {
 /// Scores of all candidates on a model, and joint refits of those that are wanted, each made once.
 class SearchRound {
  public:
-  /// Of a candidate's index.
+  /// Condition on a candidate's index.
   using Wanted = std::function<bool(std::size_t)>;
 
   /// @param candidates must outlive the round, in the same order; those excluded meanwhile no longer take
@@ -44,9 +44,9 @@ class SearchRound {
 
   /// Adds its refit to the trials.
   void try_out(std::size_t candidate);
-  /// Of the trials.
+  /// Best of the trials.
   [[nodiscard]] std::optional<Trial> best_trial(const Wanted& wanted) const;
-  /// Which shape of a term is right, its score at size zero hardly shows.
+  /// A term's score at size zero hardly shows which of its shapes is right.
   std::optional<Trial> best_shape(const std::string& key);
 
   /// Candidates that are left and wanted, the most promising first.
@@ -58,7 +58,7 @@ class SearchRound {
 
   /// Names within a few units of BIC of the best.
   [[nodiscard]] std::vector<std::size_t> competitors_of(const Trial& best) const;
-  /// What each name that may be the right one instead would make of the base parameters.
+  /// Changes of the base parameters by each name that may be the right one instead.
   std::vector<Eigen::VectorXd> model_uncertainties_of(const std::vector<std::size_t>& competitors,
                                                       const Trial& best);
 

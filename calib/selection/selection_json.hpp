@@ -15,7 +15,7 @@ namespace odomcalib::calib::selection {
 
 std::string considered_to_json(const std::vector<Considered>& considered);
 
-/// What changed at which moment, by how much, and which state the values stand for.
+/// The change, its moment and size, and the state that the values stand for.
 /// @param event a smooth term that happens at once
 /// @param mount of the sensor on the base, since then
 std::string event_to_text(const terms::FittedSmoothTerm& event, const math::Pose& mount);

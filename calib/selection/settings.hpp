@@ -155,8 +155,8 @@ inline constexpr double kPlainBend = 0.25;
 inline constexpr int kMostBends = 3;
 /// Rounds in which hyperparameters and noise settle each other. Chosen.
 inline constexpr int kShapeRounds = 3;
-/// What a parameter has to take off -2 log L when what it belongs to has passed cross-validation. Published:
-/// Akaike, IEEE Trans. Autom. Control 19, 1974.
+/// Decrease of -2 log L that a parameter needs when what it belongs to has passed cross-validation.
+/// Published: Akaike, IEEE Trans. Autom. Control 19, 1974.
 inline constexpr double kAkaike = 2.0;
 
 // --- Change point -----------------------------------------------------------------------------------------
@@ -227,9 +227,9 @@ inline constexpr double kNearBound = 0.6;
 /// Times what ticks hide that a sway has to be. Chosen.
 inline constexpr double kAboveTicks = 2.0;
 /// Deviation of a length, relative, that spoils nothing: a millimetre in a metre. Chosen.
-inline constexpr double kHarmless = 1e-3;
+inline constexpr double kNegligibleLengthStd = 1e-3;
 /// Share of a length by which a smooth term may not move it. Chosen.
-inline constexpr double kFarOff = 0.25;
+inline constexpr double kMaxLengthShift = 0.25;
 /// Level of the Wald test of a term that is still needed. Chosen: the usual 5 %.
 inline constexpr double kNeededLevel = 0.05;
 /// Times a length's deviation without the term, above which the term spoils the length: a term that
@@ -301,7 +301,7 @@ inline constexpr int kMostSteps = 12;
 /// Gauss-Newton steps of a fit. Chosen.
 inline constexpr int kMostSearchIterations = 24;
 /// Share of what a name explains from which a small delay explains it as well. Chosen.
-inline constexpr double kMuchOfName = 0.9;
+inline constexpr double kClockShareOfName = 0.9;
 /// Family-wise p-value above which a wave is not scored again. Chosen: time.
 inline constexpr double kHopelessWave = 0.05;
 
@@ -315,7 +315,7 @@ inline constexpr double kSameDependence = 0.5;
 /// Candidates refitted jointly per step. Chosen.
 inline constexpr std::size_t kRefits = 4;
 /// Share of what a freer term explains with which a name is certain. Chosen.
-inline constexpr double kNearlyAll = 0.9;
+inline constexpr double kNameShareOfSmooth = 0.9;
 
 // --- Window errors ---------------------------------------------------------------------------------------
 

@@ -31,7 +31,7 @@ class Damping {
   double growth_ = 2.0;
 };
 
-/// What is left to gain, judged from how fast the last two falls shrank.
+/// The fall that is left to gain, judged from how fast the last two falls shrank.
 double left_to_gain(double fall_before, double fall) {
   const double rate = fall / fall_before;
   return rate >= 0.0 && rate < settings::kSteadyRate ? fall * rate / (1.0 - rate) : std::abs(fall);

@@ -1,4 +1,4 @@
-// What one edge says about its two vertices: error, weight, derivatives.
+// Terms of one edge for its two vertices: error, weight, derivatives.
 #pragma once
 
 #include <Eigen/Core>

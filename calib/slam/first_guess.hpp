@@ -17,7 +17,7 @@ namespace odomcalib::calib::slam {
 Placement rotations_first(const PoseGraph& graph, const std::vector<std::size_t>& places,
                           const Placement& at);
 
-/// What an edge tells about rotation when its translation is unknown: Schur complement, [1/rad^2].
+/// Information of an edge about rotation when its translation is unknown: Schur complement, [1/rad^2].
 double rotation_information(const GraphEdge& edge);
 
 }  // namespace odomcalib::calib::slam

@@ -1,4 +1,4 @@
-// What a pose graph holds, for people who were handed one.
+// Content of a pose graph, for people who were handed one.
 #pragma once
 
 #include <cstddef>

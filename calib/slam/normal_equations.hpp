@@ -10,7 +10,7 @@
 
 namespace odomcalib::calib::slam {
 
-/// What may move.
+/// Coordinates that may move.
 enum class Freedom {
   poses,      ///< positions and headings
   positions,  ///< headings are taken as known: the error is linear, one step is the answer
@@ -32,7 +32,7 @@ class NormalEquations {
   std::optional<std::size_t> factorize(double lambda);
   /// The step for the factorised matrix; rows as in move().
   [[nodiscard]] Eigen::VectorXd solve() const { return hessian_.solve(right_side_); }
-  /// What the linear model says that chi2 falls by on a step of the matrix H + lambda diag(H).
+  /// Fall of chi2 on a step of the matrix H + lambda diag(H), by the linear model.
   [[nodiscard]] double predicted_fall(const Eigen::VectorXd& step, double lambda) const;
   /// x, y and yaw are added: the tangent space is that of the vertex' own x, y, yaw in the map.
   [[nodiscard]] Placement move(const Placement& at, const Eigen::VectorXd& step) const;

@@ -1,6 +1,6 @@
-// What odometry does wrong all the time, learnt on the way from steps that scans measured: wheels of other
-// sizes than stated bend and stretch every step alike, and a sensor that is not where it was said to be adds
-// a share of each turn. Where scans cannot tell a step, odometry so corrected stands in.
+// Constant errors of odometry, learnt on the way from steps that scans measured: wheels of other sizes than
+// stated bend and stretch every step alike, and a sensor that is not where it was said to be adds a share of
+// each turn. Where scans cannot measure a step, odometry so corrected stands in.
 #pragma once
 
 #include <Eigen/Core>
@@ -19,7 +19,7 @@ class OdometryCorrection {
   /// A step as odometry has it, and as scans measured it.
   void learn(const math::Pose& odometry, const math::Pose& measured);
   [[nodiscard]] math::Pose corrected(const math::Pose& odometry) const;
-  /// Of a corrected step: m, m, rad.
+  /// Standard deviation of a corrected step: m, m, rad.
   [[nodiscard]] const Eigen::Vector3d& sigma() const { return sigma_; }
 
  private:

@@ -161,7 +161,7 @@ class Builder {
     return std::min(options_.loop.half_width + wander, settings::kWidestSearch_m);
   }
 
-  /// Of two scans with a limited view, taken in directions that are `turned` apart, whether each sees half of
+  /// Whether each of two scans with a limited view, taken in directions that are `turned` apart, sees half of
   /// what the other does.
   [[nodiscard]] bool share_view(std::size_t j, std::size_t k, double turned) const {
     const double view = std::min(views_[j], views_[k]);
@@ -192,7 +192,7 @@ class Builder {
     return places;
   }
 
-  /// What the keyframes next to j saw, in its frame, without those next to k.
+  /// Points that the keyframes next to j saw, in its frame, without those next to k.
   [[nodiscard]] std::vector<Eigen::Vector2d> seen_about(std::size_t j, std::size_t k) const {
     std::vector<Eigen::Vector2d> points;
     const std::size_t last = std::min(j + settings::kSamePlaceAbout, k - 1);

@@ -17,7 +17,7 @@
 
 namespace odomcalib::calib::slam {
 
-/// Which scans of a drive become vertices of its graph.
+/// Spacing of the scans of a drive that become vertices of its graph.
 struct KeyframeSpacing {
   double distance = settings::kKeyframeDistance_m;    ///< m of travel, or ...
   double rotation = settings::kKeyframeRotation_rad;  ///< rad turned either way

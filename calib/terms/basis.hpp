@@ -1,4 +1,4 @@
-// What a smooth term may be a sum of: a closed set of bases, each with its own settings.
+// Bases whose sum a smooth term may be: a closed set, each with its own settings.
 #pragma once
 
 #include <variant>

@@ -68,8 +68,8 @@ bool is_unsigned(vehicle::Channel channel) {
          channel == vehicle::Channel::yaw_path;
 }
 
-/// Of both wheels, as the day goes, of one, as its brake or its motor does, or of the heading, as the wind
-/// turns it. Periods closer than settings::kCycleStep cycles per recording look alike.
+/// Periods of both wheels, as the day goes, of one, as its brake or its motor does, or of the heading, as the
+/// wind turns it. Periods closer than settings::kCycleStep cycles per recording look alike.
 void add_periods(double duration, std::vector<SmoothTerm>& smooths) {
   for (double cycles = settings::kFewestCycles;
        cycles < settings::kMostCycles && duration / cycles > settings::kShortestCycle_s;
@@ -131,7 +131,7 @@ void add_memories_beside(const SmoothTerm& smooth, std::span<const vehicle::Driv
   }
 }
 
-/// Of what lies on the floor; wheels sink in, both alike.
+/// Patches of what lies on the floor; wheels sink in, both alike.
 void add_patches(double low, double high, std::vector<SmoothTerm>& smooths) {
   smooths.push_back(
       on_basis({{vehicle::Covariate::position, vehicle::Channel::both_travel}, low, high}, Patches{}));
@@ -142,7 +142,7 @@ void add_harmonics(const SmoothTerm& smooth, int first, int last, std::vector<Sm
     smooths.push_back(on_basis(smooth, Harmonics{harmonic}));
 }
 
-/// What drives a wheel and what brakes it need not slip alike, whichever way it goes.
+/// Driving and braking need not make a wheel slip alike, whichever way it goes.
 void add_terms_of_speed_magnitude(std::span<const vehicle::DriveModel* const> models,
                                   std::vector<SmoothTerm>& smooths) {
   for (const vehicle::Dependence& dependence :
@@ -201,7 +201,7 @@ std::vector<SmoothTerm> candidate_smooths(std::span<const vehicle::DriveModel* c
         smooths.push_back(smooth);
         smooths.back().memory = vehicle::kSwayLags.size() - 1;
       }
-      // What stays until the opposite acceleration hardly resembles what fades.
+      // A term that stays until the opposite acceleration hardly resembles one that fades.
       for (std::size_t memory = 0; memory < memories_of(covariate); ++memory)
         if (is_relay(covariate, memory) &&
             (memory - vehicle::kMemorySpans.size()) % settings::kEveryRelay == 0) {

@@ -10,7 +10,7 @@
 
 namespace odomcalib::calib::terms {
 
-/// What may repeat itself in time.
+/// Channels that may repeat themselves in time.
 inline constexpr std::array kPeriodicChannels = {vehicle::Channel::both_travel, vehicle::Channel::left_travel,
                                                  vehicle::Channel::right_travel, vehicle::Channel::yaw_path};
 

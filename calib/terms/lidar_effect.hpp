@@ -1,5 +1,5 @@
-// What can be wrong with the readings themselves: where a beam's end is reported, against where it is. Such
-// errors hide in the matches as scale or lever arm and show only between scans taken in different directions.
+// Errors of the readings themselves: where a beam's end is reported, against where it is. Such errors hide in
+// the matches as scale or lever arm and show only between scans taken in different directions.
 #pragma once
 
 #include <memory>
@@ -12,7 +12,7 @@
 
 namespace odomcalib::calib::terms {
 
-/// What a reading's error may depend on.
+/// Quantities that a reading's error may depend on.
 struct Sighting {
   double bearing = 0.0;    ///< rad, direction of the beam in the sensor's frame
   double range = 0.0;      ///< m
@@ -35,7 +35,7 @@ struct LidarParameter {
 class LidarEffect {
  public:
   virtual ~LidarEffect() = default;
-  /// Of an unnamed dependence, the covariate.
+  /// Name of the effect; the covariate where it is an unnamed dependence.
   [[nodiscard]] virtual std::string name() const = 0;
   [[nodiscard]] virtual bool is_named() const { return true; }
   /// Whether scans may be corrected by it. What is nearly a common scale no scan shows well enough: it is
@@ -55,7 +55,7 @@ class LidarEffect {
   [[nodiscard]] virtual std::vector<LidarParameter> parameters() const = 0;
   /// Shift per unit of each parameter: errors are linear in them to first order.
   [[nodiscard]] virtual std::vector<BeamShift> shifts(const Sighting& sighting) const = 0;
-  /// What the parameters add up to, beyond first order where the physics is known.
+  /// Total shift by the parameters, beyond first order where the physics is known.
   [[nodiscard]] virtual BeamShift total(const Sighting& sighting, std::span<const double> values) const;
   /// Estimates as a user reads them, from parameters and their deviations.
   [[nodiscard]] virtual std::vector<std::pair<std::string, Quantity>> quantities(

@@ -78,9 +78,9 @@ class OfSector final : public UnnamedError {
     return all;
   }
 
-  /// What hides part of a view is no small thing; small bends of the whole are harmonics.
+  /// An obstacle that hides part of a view is no small thing; small bends of the whole are harmonics.
   [[nodiscard]] double may_leave() const override { return 0.85; }
-  /// What all parts have in common no scan shows well: most of the view is taken to be right.
+  /// No scan shows well what all parts have in common: most of the view is taken to be right.
   [[nodiscard]] BeamShift total(const Sighting& sighting, std::span<const double> values) const override {
     std::vector<double> at_knots{0.0};
     at_knots.insert(at_knots.end(), values.begin(), values.end());

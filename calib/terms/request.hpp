@@ -1,4 +1,4 @@
-// What a user requests by the names of effects.
+// A user's request by the names of effects.
 #pragma once
 
 #include <optional>

@@ -33,7 +33,7 @@ BasisValues values_at(const SmoothTerm& smooth, double z, const vehicle::StepCon
   return std::visit([&](const auto& basis) { return basis.values(at); }, smooth.basis);
 }
 
-/// Of each function over the interval.
+/// Growth of each function over the interval.
 BasisValues growth(const SmoothTerm& smooth, const vehicle::StepContext& c) {
   BasisValues after = values_at(smooth, c.turn_acceleration_after[smooth.memory], c);
   const BasisValues before = values_at(smooth, c.turn_acceleration_before[smooth.memory], c);
@@ -108,7 +108,7 @@ bool is_bump(const SmoothTerm& smooth) {
 
 bool concerns_sensor(const SmoothTerm& smooth) { return is_sway(smooth) || is_bump(smooth); }
 
-bool is_the_lidars(const SmoothTerm& smooth) {
+bool belongs_to_lidar(const SmoothTerm& smooth) {
   const auto [covariate, channel] = smooth.dependence;
   const bool crabs = channel == vehicle::Channel::sideways || channel == vehicle::Channel::sideways_path;
   const bool gives_way =

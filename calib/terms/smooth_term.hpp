@@ -46,8 +46,7 @@ bool belongs_to(const SmoothTerm& smooth, std::size_t function, std::size_t part
 /// Values of the smooth term's functions.
 /// @param part index of the channel among those it acts on
 BasisValues functions_of(const SmoothTerm& smooth, const vehicle::StepContext& context, std::size_t part = 0);
-/// What the coefficients are multiplied by in an interval: the functions, or on the sensor's yaw their
-/// growth.
+/// Factors of the coefficients in an interval: the functions, or on the sensor's yaw their growth.
 BasisValues functions_in(const SmoothTerm& smooth, const vehicle::StepContext& context, std::size_t part = 0);
 std::size_t function_count(const SmoothTerm& smooth);
 /// Whether the functions are the same on whichever channel, but for their mean.
@@ -61,9 +60,9 @@ bool is_sway(const SmoothTerm& smooth);
 bool is_bump(const SmoothTerm& smooth);
 /// A change of the sensor's place on the base.
 bool concerns_sensor(const SmoothTerm& smooth);
-/// That, a metre that changes as a lidar warms up, or a sideways motion that goes with time or with the last
-/// turn: no base begins to crab, but a mount gives way. None of odometry's.
-bool is_the_lidars(const SmoothTerm& smooth);
+/// A change of the sensor's place, a metre that changes as a lidar warms up, or a sideways motion that goes
+/// with time or with the last turn: no base begins to crab, but a mount gives way. None of odometry's.
+bool belongs_to_lidar(const SmoothTerm& smooth);
 
 /// Has a phase or an origin that the next drive does not share.
 bool is_of_one_drive(const SmoothTerm& smooth);

@@ -13,7 +13,7 @@ namespace {
 /// Relative; rad per m; m per rad.
 double typical_size_of(const SmoothTerm& smooth) {
   if (smooth.dependence.channel == vehicle::Channel::yaw_path || concerns_sensor(smooth)) return 0.02;
-  // What a scan matcher's own bias in one room amounts to is a part of this.
+  // The size includes a scan matcher's own bias in one room.
   if (smooth.dependence.covariate == vehicle::Covariate::heading ||
       smooth.dependence.covariate == vehicle::Covariate::position)
     return 0.015;
@@ -48,12 +48,12 @@ class SmoothTermEffect final : public StepEffect<SmoothTermEffect> {
     return splines->penalty(strength(), typical_size(), function_count(smooth_));
   }
   [[nodiscard]] vehicle::Storage storage() const override {
-    if (is_the_lidars(smooth_)) return vehicle::Storage::driver;
+    if (belongs_to_lidar(smooth_)) return vehicle::Storage::driver;
     return is_of_one_drive(smooth_) ? vehicle::Storage::nowhere : vehicle::Storage::host;
   }
   /// Wheels that changed with time begin the next drive as they ended this one.
   [[nodiscard]] bool carries_over() const override {
-    return smooth_.dependence.covariate == vehicle::Covariate::time && !is_the_lidars(smooth_) &&
+    return smooth_.dependence.covariate == vehicle::Covariate::time && !belongs_to_lidar(smooth_) &&
            !basis_as<Cycle>(smooth_);
   }
   /// A head that sways moves sideways too, which looks like a base that does: odometry must not follow it.
@@ -98,7 +98,7 @@ class SmoothTermEffect final : public StepEffect<SmoothTermEffect> {
   SmoothTerm smooth_;
 };
 
-/// Of the value and its neighbours.
+/// Mean of the value and its neighbours.
 double mean_about(std::span<const double> values, std::size_t k) {
   const std::size_t first = k > 0 ? k - 1 : 0, end = std::min(k + 2, values.size());
   double sum = 0.0;

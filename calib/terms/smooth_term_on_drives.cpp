@@ -49,7 +49,7 @@ void for_each_value(const SmoothTerm& smooth, std::span<const double> coefficien
   });
 }
 
-/// Of what belongs to the place or the day.
+/// Whether the term has a mean that belongs to the place or the day.
 bool has_mean(const SmoothTerm& smooth) {
   const bool ends_as_it_is = is_bump(smooth) || basis_as<Decay>(smooth);
   const auto* waves = basis_as<Harmonics>(smooth);

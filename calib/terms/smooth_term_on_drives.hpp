@@ -1,4 +1,4 @@
-// What drives show of a smooth term: the range of its covariate, its mean, its spread.
+// Properties of a smooth term over drives: the range of its covariate, its mean, its spread.
 #pragma once
 
 #include <span>
@@ -15,10 +15,10 @@ std::pair<double, double> range_of(vehicle::Covariate covariate,
                                    std::span<const vehicle::DriveModel* const> models,
                                    std::size_t memory = vehicle::kUsualMemory);
 
-/// What an unsigned way adds to a signed one, a drive that goes only one way cannot separate from the wheels.
+/// Drives that go only one way cannot separate an unsigned way's addition to a signed one from the wheels.
 bool goes_both_ways(std::span<const vehicle::DriveModel* const> models);
 
-/// What is left of a wheel's or the track's term about its mean is a term of the same kind; a constant that
+/// The rest of a wheel's or the track's term about its mean is a term of the same kind; a constant that
 /// pushes the same way whichever way the wheel turns is none.
 bool may_be_centred(const SmoothTerm& smooth);
 /// The same smooth term about its mean over these drives.

@@ -1,5 +1,5 @@
-// What a defect may depend on, and how it enters the motion: the words of which effects and smooth terms are
-// made.
+// Covariates that a defect may depend on, and channels by which it enters the motion: the words of which
+// effects and smooth terms are made.
 #pragma once
 
 #include <optional>
@@ -50,12 +50,12 @@ bool belongs_to_the_place(Covariate covariate);
 bool begins_with_the_recording(Covariate covariate);
 /// A speed or turn rate whose sign is the direction.
 bool is_signed_speed(Covariate covariate);
-/// Of a wheel, of the base forward or to the side.
+/// Acceleration of a wheel, or of the base forward or to the side.
 bool is_acceleration(Covariate covariate);
-/// Of a wheel.
+/// Phase of a wheel.
 bool is_phase(Covariate covariate);
 bool is_angle(Covariate covariate);
-/// What the robot did last, however long ago.
+/// The robot's last turn or acceleration, however long ago.
 bool is_memory(Covariate covariate);
 /// A distance or angle since an event: the defect fades with it.
 bool is_distance_since(Covariate covariate);
@@ -98,8 +98,8 @@ enum class Channel {
 };
 inline constexpr Channel kLastChannel = Channel::sensor_yaw;
 std::string to_string(Channel channel);
-/// Of an unsigned way the signed one: whatever depends on a speed may change either, and only the direction
-/// tells which. Any other channel is its own.
+/// Signed counterpart of an unsigned way: whatever depends on a speed may change either, and only the
+/// direction distinguishes them. Any other channel is its own.
 Channel signed_counterpart(Channel channel);
 
 /// To the left by f, rad.
@@ -185,7 +185,7 @@ struct Dependence {
   friend bool operator==(const Dependence&, const Dependence&) = default;
 };
 
-/// Of both wheels alike, of each by its own speed.
+/// Dependence of both wheels alike, of each on its own speed.
 inline constexpr Dependence kOfEachWheel{Covariate::wheel_speed, Channel::both_travel};
 
 }  // namespace odomcalib::calib::vehicle

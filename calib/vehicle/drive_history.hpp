@@ -1,4 +1,4 @@
-// What an interval owes to the drive before it.
+// Dependence of an interval on the drive before it.
 #pragma once
 
 #include "calib/math/se2.hpp"
@@ -9,8 +9,8 @@
 
 namespace odomcalib::calib::vehicle {
 
-/// What accumulates over a drive: pose by the plain model, how far back the last reversals lie, and the
-/// groups of covariates that are asked for.
+/// State accumulated over a drive: pose by the plain model, how far back the last reversals lie, and the
+/// requested groups of covariates.
 class DriveHistory {
  public:
   /// @param tick_angle rad, of one count: a wheel that stands between two may show either

@@ -41,9 +41,9 @@ class Trajectory {
  public:
   /// Base pose at each sample, starting at the origin.
   [[nodiscard]] const std::vector<math::Pose>& poses() const { return poses_; }
-  /// Of each interval between samples.
+  /// Twist of each interval between samples.
   [[nodiscard]] const std::vector<math::Pose>& twists() const { return twists_; }
-  /// What it was made with.
+  /// Parameters it was made with.
   [[nodiscard]] std::span<const double> parameters() const { return parameters_; }
   [[nodiscard]] const PlacedEffects& effects() const { return effects_; }
   /// Base pose at the encoder time that belongs to a time on the sensor's clock.
@@ -72,7 +72,7 @@ class DriveModel {
 
   [[nodiscard]] const wheels::WheelTrack& track() const { return track_; }
   [[nodiscard]] const std::vector<StepContext>& context() const { return context_; }
-  /// Of the tick intervals that a measured motion touches: one at least.
+  /// Contexts of the tick intervals that a measured motion touches: one at least.
   [[nodiscard]] std::span<const StepContext> context_within(const Interval& interval) const;
 
   /// Wheels with every interval observed with these base parameters. Heading and place are the latest fix (in

@@ -1,4 +1,4 @@
-// What can be missing in the plain differential-drive model: the interface of one effect.
+// Interface of one effect: something that can be missing in the plain differential-drive model.
 #pragma once
 
 #include <ceres/jet.h>
@@ -29,7 +29,7 @@ struct EffectParameter {
   double prior =
       0.0;  ///< deviation of a normal prior about zero; 0: none. What the data do not show stays small
   bool fixed = false;  ///< a shape that is tried at several values instead of being fitted
-  /// Of an effect of the reference: the wheels have this part of it whoever looks at them.
+  /// In an effect of the reference: this part belongs to the wheels, whoever looks at them.
   bool of_wheels = false;
   /// Shapes (thresholds, lengths) start away from zero; sizes start at zero.
   [[nodiscard]] bool is_size() const { return start == 0.0 && !fixed; }
@@ -38,7 +38,7 @@ struct EffectParameter {
 /// Where a correction can live.
 enum class Storage { controller, host, driver, nowhere };
 
-/// What an effect says of the sensor's clock against that of the encoders.
+/// The part that an effect describes of the sensor's clock against that of the encoders.
 enum class ClockPart { none, offset, rate };
 
 class Effect {
@@ -84,7 +84,7 @@ class Effect {
   /// normal one.
   [[nodiscard]] virtual bool has_two_states() const { return false; }
 
-  /// What apply() looks at beside the covariates that every interval has.
+  /// Covariates that apply() uses beside those that every interval has.
   [[nodiscard]] virtual CovariateGroups covariates() const { return {}; }
   /// Changes the motion of one tick interval in place. Parameters at their start leave it unchanged.
   virtual void apply(const StepContext& context, std::span<const double> parameters,

@@ -25,7 +25,7 @@ struct WheelStep {
   T track{1.0};  ///< factor on the track width
 };
 
-/// Of an acceleration, how fast the speed or turn rate grows in magnitude: negative while it is braked,
+/// Growth of the magnitude of a speed or turn rate by an acceleration: negative while it is braked,
 /// whichever way the motion goes.
 inline double growth_of_speed_magnitude(double acceleration, double speed) {
   return std::copysign(acceleration, acceleration * speed);
@@ -42,7 +42,7 @@ std::size_t nearest_of(const std::array<double, N>& values, double value) {
 
 /// Everything observable about one tick interval; effects depend on nothing else. Speeds and accelerations
 /// are smoothed, since differences of raw ticks are mostly quantisation noise.
-/// What waves of the place and the day depend on comes first, in one line of memory: thousands are tried.
+/// Fields for waves of the place and the day come first, in one cache line: thousands of waves are tried.
 struct alignas(64) StepContext {
   double t = 0.0;        ///< middle of the interval, s after the recording's first sample
   double dt = 0.0;       ///< s
@@ -81,7 +81,7 @@ struct alignas(64) StepContext {
   SinceStop since_stop{};
   /// winding: what unwinds in this interval, by each way of winding up, and the rim speed since the robot
   /// last stood, m/s.
-  std::array<Unwound, kWindings> unwound{};
+  std::array<ReleasedWinding, kWindings> unwound{};
   double fastest = 0.0;
   /// previous_turn: which way it turned lately, mean of the turn's sign over a radian, -1 to 1.
   Memory previous_turn{};

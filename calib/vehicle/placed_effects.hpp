@@ -46,7 +46,7 @@ class PlacedEffects {
   std::vector<Place> places_;
 };
 
-/// What these effects look at together.
+/// Covariates that these effects use together.
 inline CovariateGroups covariates_of(const EffectList& effects) {
   CovariateGroups groups;
   for (const auto& effect : effects) groups |= effect->covariates();

@@ -41,7 +41,7 @@ Eigen::Matrix<double, 3, 6> conjugate_derivative(const math::Pose& base, const m
 struct End {
   std::size_t step = 0;
   PartOfStep::Weights<double> weights{};  ///< of the twist since the step's begin
-  /// Of the motion since the step's begin, by that twist.
+  /// Derivative of the motion since the step's begin, by that twist.
   Eigen::Matrix3d by_twist = Eigen::Matrix3d::Zero();
   math::Pose pose;
   Eigen::Vector3d velocity = Eigen::Vector3d::Zero();  ///< by encoder time, in room axes
@@ -65,8 +65,8 @@ End end_at(const wheels::WheelTrack& track, const Trajectory& along, double sens
   return end;
 }
 
-/// What a change of the pose `here` (x, y in room axes, yaw) does to the base motion from `begin` to `end`,
-/// when everything after `here` is carried along rigidly.
+/// Derivative of the base motion from `begin` to `end` by the pose `here` (x, y in room axes, yaw), when
+/// everything after `here` is carried along rigidly.
 Eigen::Matrix3d carried(const math::Pose& begin, const math::Pose& here, const math::Pose& end) {
   const double c = std::cos(begin.yaw), s = std::sin(begin.yaw);
   const double lever_x = -(end.y - here.y), lever_y = end.x - here.x;
@@ -143,7 +143,7 @@ struct Sensitivity::Path {
        const std::vector<Eigen::Matrix3d>& whole_steps);
   /// @param by_part base motion by the twist of the part of the step that lies before one of its ends
   void add(const End& at, const Eigen::Matrix3d& by_part);
-  /// What delays of both ends do.
+  /// Effect of delays of both ends.
   [[nodiscard]] Chunk by_delays(const Jet& at_begin, const Jet& at_end) const {
     return -by_begin * at_begin.v.transpose() - by_end * at_end.v.transpose();
   }

@@ -10,7 +10,7 @@
 
 namespace odomcalib::calib::vehicle {
 
-/// What an effect of one parameter does to each motion, tick interval by tick interval.
+/// Response of each motion to an effect of one parameter, tick interval by tick interval.
 class StepResponse {
  public:
   /// @param first tick interval of each motion

@@ -78,10 +78,10 @@ double duration_for(const wheels::WheelTrack& track, const wheels::BaseParameter
   return tick <= settings::kCoarse_m ? if_fine : settings::kSmoothing_s;
 }
 
-/// Of a running drive the last ones are looked at: they stay off the heap.
+/// A running drive looks at its last intervals: they stay off the heap.
 constexpr std::size_t kFewIntervals = 4;
 
-/// Of the wheels' angles, rad/s^2, over the time up to the end of each interval from `first` on.
+/// Angular accelerations of the wheels, rad/s^2, over the time up to each interval's end from `first` on.
 // NOLINTNEXTLINE(bugprone-exception-escape): moving more than a few of them takes memory
 struct WheelAccelerations {
   boost::container::small_vector<double, kFewIntervals> left, right;
@@ -166,7 +166,7 @@ double forward_acceleration(const WheelAccelerations& wheels, std::size_t k,
   return 0.5 * (base.left_radius * wheels.left[k] + base.right_radius * wheels.right[k]);
 }
 
-/// What strong acceleration moves it moves when that begins, however strong it has to be.
+/// Strong acceleration takes effect when it begins, however strong it has to be.
 void fill_forward_accelerations(std::vector<StepContext>& contexts, const wheels::WheelTrack& track,
                                 std::size_t first, const wheels::BaseParameters& base) {
   const auto wheels = centred_accelerations(track, first, acceleration_window(track, base));
@@ -248,8 +248,8 @@ void make_context_of_moment(const wheels::WheelTrack& track, const wheels::BaseP
   fill_groups(contexts, track, first, base, groups);
 }
 
-void see_from_the_past(StepContext& last, const wheels::WheelTrack& track, const wheels::BaseParameters& base,
-                       CovariateGroups groups) {
+void fill_past_covariates(StepContext& last, const wheels::WheelTrack& track,
+                          const wheels::BaseParameters& base, CovariateGroups groups) {
   const std::size_t n = track.t.size(), first = n - std::min<std::size_t>(n, 3);
   if (groups.contain(CovariateGroup::acceleration_changes)) {
     const auto wheels =

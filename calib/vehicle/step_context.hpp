@@ -1,4 +1,4 @@
-// What is observed in each tick interval.
+// Observed quantities of each tick interval.
 #pragma once
 
 #include <cstddef>
@@ -24,8 +24,8 @@ void make_context_of_moment(const wheels::WheelTrack& track, const wheels::BaseP
 
 /// Where the last interval of the track is the present, changes of its acceleration come from what was
 /// before: half of a window about it would be missing, and their sum over a drive would grow with the noise.
-void see_from_the_past(StepContext& last, const wheels::WheelTrack& track, const wheels::BaseParameters& base,
-                       CovariateGroups groups);
+void fill_past_covariates(StepContext& last, const wheels::WheelTrack& track,
+                          const wheels::BaseParameters& base, CovariateGroups groups);
 
 /// With what depends on the drive before.
 std::vector<StepContext> make_context(const wheels::WheelTrack& track, const wheels::BaseParameters& base,

@@ -35,7 +35,7 @@ class PartOfStep {
     if (step + 1 < twists.size()) after_ = twists[step + 1];
   }
 
-  /// What the twists before, of, and after the interval are multiplied by.
+  /// Factors of the twists before, of, and after the interval.
   template <typename T>
   struct Weights {
     T before, own, after;

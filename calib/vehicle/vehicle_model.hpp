@@ -1,4 +1,4 @@
-// What is the same in all drives of a robot: which effects it shows, and a value of every parameter. A
+// Common part of all drives of a robot: the effects it shows, and a value of every parameter. A
 // DriveModel applies it to the wheels of one drive.
 #pragma once
 
@@ -24,8 +24,8 @@ std::optional<std::size_t> place_of(const EffectList& effects, ClockPart part);
 /// First parameter of that part of the clock; nothing where the effects have none.
 std::optional<Eigen::Index> parameter_of(const EffectList& effects, ClockPart part);
 
-/// Of the sensor's clock against that of the encoders in the middle of the recording, s; 0 where the model
-/// has none.
+/// Delay of the sensor's clock against that of the encoders in the middle of the recording, s; 0 where the
+/// model has none.
 double delay_of(const VehicleModel& model);
 
 /// The first effects alone, with their parameters.

@@ -64,7 +64,7 @@ WheelMotion motion_between(const WheelTrack& track, double begin, double end,
 /// Tuples laid end to end on one time axis; sample k is the start of tuple k.
 WheelTrack wheel_track_from_increments(const Recording& recording);
 
-/// What the robot's papers say about it; values that are missing stay zero.
+/// Base parameters by the robot's papers; values that are missing stay zero.
 inline BaseParameters nominal_base(const RobotDescription& robot) {
   BaseParameters base{
       robot.left_wheel_diameter / 2.0, robot.right_wheel_diameter / 2.0, robot.track_width, {}};

@@ -47,7 +47,7 @@ class BaseDrawing {
     return stated > 0.0 ? std::optional(stated) : std::nullopt;
   }
 
-  /// Of a place on the base, m forward and to the left.
+  /// Drawing coordinates of a place on the base, m forward and to the left.
   [[nodiscard]] std::array<double, 2> at(double x, double y) const {
     return {std::clamp(kMiddleX - scale_ * y, kNear, kFar), std::clamp(kMiddleY - scale_ * x, kNear, kFar)};
   }

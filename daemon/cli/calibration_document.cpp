@@ -67,7 +67,7 @@ std::string quantity_cell(const Quantity* quantity) {
   return number(quantity->value * show.factor, show.digits);
 }
 
-/// What each estimator takes for granted: where that does not hold it is off, and the answer is not.
+/// Assumptions of each estimator: where they do not hold it is off, and the answer is not.
 constexpr auto kAssumptions = std::to_array<std::pair<std::string_view, std::string_view>>({
     {"straight", "from straight pieces alone; both wheels are off by one factor, and no effects"},
     {"spin", "from turns on the spot alone; no effects"},
@@ -139,7 +139,7 @@ Section linear_of(const std::optional<LinearCorrection>& linear) {
   return section;
 }
 
-/// What belongs to the place or the day, or begins at another phase each time.
+/// Effects that belong to the place or the day, or begin at another phase each time.
 std::set<std::string> not_in_odometry(const Calibration& calibration) {
   std::set<std::string> names;
   for (const auto& placement : calib::odometry::effect_placements(calibration))
@@ -169,7 +169,7 @@ Section residual_of(const Calibration& calibration) {
   return section;
 }
 
-/// Which robot, what it was calibrated from, and by what.
+/// The robot, what it was calibrated from, and by what.
 Section subject_section(const Calibration& calibration) {
   Section section{"Robot and recording", {}, {}};
   const auto add = [&section](const char* what, const std::string& text) {
@@ -215,7 +215,7 @@ std::string headline(Verdict verdict) {
   return verdict == Verdict::refused ? "REFUSED" : "ACCEPTED WITH WARNINGS";
 }
 
-/// What the service records says by itself what is what: a choice was made in somebody else's recording.
+/// Recordings of the service need no choices: a choice was made in somebody else's recording.
 bool is_from_elsewhere(const Calibration& calibration) {
   return std::any_of(calibration.data.begin(), calibration.data.end(),
                      [](const DataUse& data) { return !data.choices.empty(); });

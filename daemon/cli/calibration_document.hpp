@@ -15,7 +15,7 @@ Document describe(const Calibration& calibration);
 
 // Parts of it, for whoever shows less, or folds it.
 Section verdict_section(const Calibration& calibration);
-/// What odometry was off by and is now, in a sentence; no line where that is not known.
+/// Error of odometry before and now, in a sentence; no line where it is not known.
 Section gain_section(const Calibration& calibration);
 Section parameters_section(const Calibration& calibration);
 Section effects_section(const Calibration& calibration);
@@ -29,7 +29,7 @@ std::string next_step(const Calibration& calibration);
 
 /// Text of the member "settings", such as "place", "note" or "version"; empty where it is not stated.
 std::string setting_of(const Calibration& calibration, const char* name);
-/// Which metre "true to" stands on: "tape" or "lidar", by its data sheet; empty where nothing is known of it.
+/// The metre "true to" stands on: "tape" or "lidar", by its data sheet; empty where nothing is known of it.
 std::string metre_of(const Calibration& calibration);
 
 }  // namespace odomcalib::cli

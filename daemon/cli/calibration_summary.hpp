@@ -1,4 +1,4 @@
-// What a calibration comes to, for a terminal.
+// Summary of a calibration, for a terminal.
 #pragma once
 
 #include <cstddef>

@@ -30,7 +30,7 @@ Error not_running(const std::string& socket, const std::string& what) {
 }
 
 // A busy machine must not delay the renewals. Without the right to this the robot may stop early, no more.
-// What comes after the motion, such as a long report, is as urgent as before: on one processor it would keep
+// Work after the motion, such as a long report, is as urgent as before: on one processor it would keep
 // the daemon from its life signs.
 class Hurry {
  public:

@@ -59,7 +59,7 @@ std::string file_name(const std::string& path);
 /// "5mm/m" or "0.5%", as m in a metre. Error: usage.
 Result<double> error_of_metre_from_text(const std::string& text);
 
-/// What the counter of the robot said, m; nullopt where the file has none.
+/// Reading of the robot's own odometer, m; nullopt where the file has none.
 std::optional<double> odometer_of(const Calibration& calibration);
 
 /// Groups in the order of how urgent they are.

@@ -67,7 +67,7 @@ std::string error_text(const comparison::Estimate& error, const std::string& uni
                      2.0 * error.std * factor, digits, unit, error.value > 0.0 ? more : less);
 }
 
-/// What the change does to odometry.
+/// Effect of the change on odometry.
 std::string in_words(const Difference& difference) {
   if (!difference.metre_error) return "";
   std::string text = "by the values before, odometry now reads a metre " +
@@ -164,7 +164,7 @@ std::string files_text(const ComparedRobot& robot) {
   return fmt::format("{} calibrations, {}", robot.files.size(), order_text(robot));
 }
 
-/// Which files, and which of them were left out.
+/// The files, and which of them were left out.
 Section files_section(const ComparedRobot& robot) {
   Section section{"Files", {}, {{"file", "driven", "verdict", ""}, {}}};
   for (const ComparedFile& file : robot.files) {
@@ -182,7 +182,7 @@ bool counts_differ(const ComparedRobot& robot) {
   });
 }
 
-/// What the numbers below are to be read with.
+/// Basis on which to read the numbers below.
 Section basis_section(const ComparedRobot& robot) {
   Section section{"", {files_text(robot)}, {}};
   if (counts_differ(robot))
@@ -320,7 +320,7 @@ std::string finding(const ComparedRobot& robot) {
   return fmt::format("{} ({})", changed ? "something changed" : "nothing changed", p_text(test.p_value));
 }
 
-/// What matters most first: the whole change, where it leads, and then how it came about.
+/// Sections, the most important first: the whole change, where it leads, and then how it came about.
 std::vector<Section> sections_of(const ComparedRobot& robot, const ComparisonOptions& options,
                                  Extent extent) {
   std::vector<Section> sections{basis_section(robot)};
@@ -337,7 +337,7 @@ std::vector<Section> sections_of(const ComparedRobot& robot, const ComparisonOpt
   return sections;
 }
 
-/// Of the newest calibration, over nominal.
+/// Deviation of the newest calibration's value from nominal, %.
 std::string over_nominal(const Calibration& calibration, const char* name, double nominal) {
   const auto value = calibration.parameter(name);
   if (!value || !(nominal > 0.0) || !std::isfinite(*value)) return "-";

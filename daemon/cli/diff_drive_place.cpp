@@ -246,7 +246,7 @@ class DiffDriveEditor {
 
   [[nodiscard]] const YamlValue& radius() const { return *place_.of(kRadius).front(); }
 
-  /// Of the value within braces, else of its line, behind a comment.
+  /// End of the value within braces, else of its line, behind a comment.
   [[nodiscard]] std::size_t end_of_radius() const {
     const std::size_t end = byte_of(yaml_, radius().span.end);
     if (place_.flow) return end;

@@ -55,7 +55,7 @@ bool is_wide(const Table& table) {
   return width > kNarrow;
 }
 
-/// Of each column, the attribute that right-aligns its cells, or nothing.
+/// For each column, the attribute that right-aligns its cells, or nothing.
 std::vector<const char*> alignments_of(const Table& table) {
   std::size_t columns = table.head.size();
   for (const auto& row : table.rows) columns = std::max(columns, row.size());
@@ -84,7 +84,7 @@ std::string row_of(const std::vector<std::string>& row, const std::vector<std::s
   return out + "</tr>\n";
 }
 
-/// What is drawn upwards, and what is what.
+/// Key of the figure: the quantity drawn upwards, and the names of the curves.
 std::string key_of(const Figure& figure) {
   std::string out = fmt::format("<p class=\"k\"><span>{}</span>", escaped(figure.y_label));
   for (const Curve& curve : figure.curves)

@@ -10,7 +10,7 @@
 
 namespace odomcalib::cli {
 
-/// What is drawn of a figure; the tone tells what it stands for, in every figure the same.
+/// One curve of a figure; the tone shows what it stands for, in every figure the same.
 struct Curve {
   enum class Style { line, dots, steps };
   enum class Tone { before, after, reference };

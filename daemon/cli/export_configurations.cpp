@@ -24,7 +24,7 @@
 namespace odomcalib::cli {
 namespace {
 
-/// Of the encoder; none where the recordings told the motion by something else and nobody stated any.
+/// Counts of the encoder; none where the recordings hold the motion as something else and nobody stated any.
 std::optional<double> counts_a_turn(const Calibration& calibration) {
   const double counts = calibration.robot.ticks_per_rev;
   const auto is_made = [](const DataUse& data) {
@@ -106,7 +106,7 @@ std::string ros_arduino_yaml(const Calibration& calibration, const Dimensions& d
   return out;
 }
 
-/// What the values of the controller are to be multiplied by, and what is to be added. TicksMM counts per mm
+/// Factors for the values of the controller, and the term to be added. TicksMM counts per mm
 /// of the right wheel, RevCount is proportional to the counts of half a turn, DriftFactor corrects the left
 /// wheel in parts of 8192 (MobileRobots, "Pioneer 3 Operations Manual", table of the FLASH parameters).
 Result<std::string> arcos(const Calibration& calibration, const Dimensions& d, const std::string& where) {
@@ -150,7 +150,7 @@ std::string commented(const std::string& what, std::string text) {
   return comment.begin + text + comment.end + "\n";
 }
 
-/// Which robot, which recordings, which program, and what it said of the result.
+/// The robot, the recordings, the program, and its verdict on the result.
 std::string provenance(const Calibration& calibration, const std::string& what) {
   const std::string robot = calibration.robot.robot_id.empty() ? "" : " of " + calibration.robot.robot_id;
   std::string text = commented(
@@ -185,7 +185,7 @@ std::string errors_text(const std::vector<DriveError>& errors, std::optional<Bou
   return text;
 }
 
-/// What odometry errs by without its effects, and what would apply them.
+/// Error of odometry without its effects, and the means to apply them.
 std::string remaining_error(const Calibration& calibration, bool is_step) {
   const auto errors = report_data_of(calibration).drive_errors;
   const std::string without = errors_text(errors, &DriveError::geometry),
@@ -196,7 +196,7 @@ std::string remaining_error(const Calibration& calibration, bool is_step) {
   return "without these effects odometry errs by " + without + ", with them by " + with + ": " + remedy;
 }
 
-/// What is to be done where the calibration does not know the counts of a turn; null: they are not asked for.
+/// Advice where the calibration does not know the counts of a turn; null: the export has no place for them.
 const char* unknown_counts(const std::string& what) {
   if (what == "ros_arduino")
     return "encoder_resolution and gear_reduction are left out: the recording has no counts; they stay what "
@@ -244,7 +244,7 @@ std::vector<std::string> not_held(const Calibration& calibration, const std::str
   bool lacks_effects = false;
   for (const auto& placement : calib::odometry::effect_placements(calibration)) {
     using calib::odometry::Place;
-    // What belongs to the place or the day is nobody's to hold; a lidar's joint has no wheels.
+    // Effects of the place or the day are nobody's to hold; a lidar's joint has no wheels.
     if (placement.place == Place::nowhere || (what == "urdf" && placement.place == Place::odometry)) continue;
     // Odometry as source has what moves the base, and nothing of the lidar.
     if (is_step && (placement.place == Place::reference || is_in_step(placement.effect))) continue;

@@ -15,9 +15,8 @@ bool is_configuration(const std::string& what);
 /// Names that `configuration` takes.
 const std::vector<std::string>& configurations();
 
-/// What odometry, or a comparison of it with the lidar, would need of this calibration and the format has no
-/// room for: a sentence each. The text of
-/// the format has them as comments.
+/// Parts of this calibration that odometry, or a comparison of it with the lidar, would need and the format
+/// has no room for: a sentence each. The text of the format has them as comments.
 std::vector<std::string> not_held(const Calibration& calibration, const std::string& what);
 
 /// Begins with where the values are from, as a comment.

@@ -91,8 +91,8 @@ Result<std::string> robot_localization_yaml(const Calibration& calibration, cons
   if (!found) return found.error();
   const MotionNoise& noise = found.value();
   constexpr double kSpeed = settings::kSpeedOfNoise, kRate = settings::kRateOfNoise;
-  // What a message adds to the way has the variance of the way between two messages; as a speed it is divided
-  // by the time between them, squared.
+  // A message's addition to the way has the variance of the way between two messages; as a speed it is
+  // divided by the time between them, squared.
   const double by_chance = kSpeed * kRate;
   constexpr double kUnknown = 1e6;
   return fmt::format(

@@ -13,8 +13,8 @@ namespace odomcalib::cli {
 Result<std::string> amcl_yaml(const Calibration& calibration, const std::string& where);
 /// Covariances of odometry for robot_localization, as diff_drive_controller publishes them. Errors as above.
 Result<std::string> robot_localization_yaml(const Calibration& calibration, const std::string& where);
-/// What slam_toolbox's matcher is penalised by for leaving odometry, with the steps and the grid that this
-/// holds for. Errors as above.
+/// Penalties of slam_toolbox's matcher for leaving odometry, with the steps and the grid that they hold
+/// for. Errors as above.
 Result<std::string> slam_toolbox_yaml(const Calibration& calibration, const std::string& where);
 
 }  // namespace odomcalib::cli

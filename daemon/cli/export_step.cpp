@@ -22,7 +22,7 @@ using calib::vehicle::CovariateGroup;
 namespace of_vehicle = calib::vehicle::settings;
 namespace of_odometry = calib::odometry::settings;
 
-/// That the sources have a function for.
+/// Effects that the sources have a function for.
 constexpr std::array<std::string_view, 15> kWritten = {"time_offset",
                                                        "encoder_lag",
                                                        "wheel_eccentricity",
@@ -71,7 +71,7 @@ double shape_of(const std::vector<Written>& effects, std::string_view name, std:
 
 using Constants = std::vector<std::pair<std::string, double>>;
 
-/// What the calibration says, and the numbers by which effects look at a drive.
+/// Values of the calibration, and the numbers by which effects look at a drive.
 Constants constants_of(const Calibration& calibration, const Correction& correction,
                        const std::vector<Written>& effects) {
   using namespace calib::vehicle;  // NOLINT(google-build-using-namespace): names of grids

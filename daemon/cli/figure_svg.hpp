@@ -13,7 +13,7 @@ std::string escaped(const std::string& text);
 /// Class of the page's style that has the colour of a curve.
 const char* class_of(Curve::Tone tone);
 
-/// What the curves are called stands beside the drawing: the page sets it in letters that do not shrink with
+/// The names of the curves stand beside the drawing: the page sets them in letters that do not shrink with
 /// it. Empty when there is nothing finite to draw.
 std::string to_svg(const Figure& figure);
 

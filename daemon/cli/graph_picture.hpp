@@ -9,7 +9,7 @@
 
 namespace odomcalib::cli {
 
-/// What the robot saw, in the frame of the graph.
+/// Surroundings that the robot saw, in the frame of the graph.
 struct PictureMap {
   std::vector<Eigen::Vector2d> occupied;   ///< m, centres of cells
   double cell = 0.0;                       ///< m

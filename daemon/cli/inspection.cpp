@@ -102,7 +102,7 @@ std::vector<std::string> assumed_in(const Recording& recording, const RobotDescr
   return names;
 }
 
-/// What solve would find wrong before it measures anything.
+/// The error that solve would find before it measures anything.
 std::optional<Error> objection_to(const Recording& recording) {
   return calib::ingest::check_recordings(calib::ingest::put_right({&recording, 1}).view());
 }
@@ -112,7 +112,7 @@ void look_at(Inspection& found) {
   found.streams = streams_of(recording);
   found.scans = scans_of(recording.scans);
   const auto& assumed = found.assumed;
-  // What a count is nobody can guess.
+  // Nobody can guess what a count is.
   if (std::find(assumed.begin(), assumed.end(), "ticks_per_rev") == assumed.end())
     found.motion = motion_of(recording);
   if (!found.error) found.error = objection_to(recording);

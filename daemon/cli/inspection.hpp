@@ -1,4 +1,4 @@
-// What a recording holds, what solve would take of it, and what its motion is enough for: without measuring
+// Content of a recording, what solve would take of it, and what its motion is enough for: without measuring
 // anything.
 #pragma once
 
@@ -52,7 +52,7 @@ struct Inspection {
 };
 
 /// Errors: io, usage (options that make no sense), and those of a file in which there is nothing to show.
-/// What else is wrong with the recording is in the result.
+/// Anything else wrong with the recording is in the result.
 Result<Inspection> inspect(const std::string& path, const RecordingOptions& options);
 
 Document describe(const Inspection& inspection);

@@ -88,7 +88,7 @@ Section scans_section(const ScanSummary& scans) {
   return section;
 }
 
-/// What solve would take, and what it would leave out or put right.
+/// Data that solve would take, and data that it would leave out or put right.
 Section taken_section(const Inspection& found) {
   Section section{"What solve takes", {}, {}};
   if (found.error) section.lines.push_back("nothing as it stands: " + found.error->text());

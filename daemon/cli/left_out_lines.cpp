@@ -12,14 +12,14 @@
 namespace odomcalib::cli {
 namespace {
 
-/// Of several recordings each reason begins with the name of its file.
+/// Begin of the recording it is from: with several, each reason begins with the name of its file.
 std::optional<double> begin_of(const Calibration& calibration, const Discarded& one) {
   for (const DataUse& data : calibration.data)
     if (calibration.data.size() == 1 || one.reason.starts_with(data.name + ": ")) return data.begin;
   return std::nullopt;
 }
 
-/// What is damaged in a file counts however little it is: nobody knows how much that was.
+/// Damage to a file counts however little it is: nobody knows how much that was.
 bool is_worth_a_line(const Discarded& one) {
   return is_loss(one) && (one.of == 0 ? one.what == "file" || one.what == "chunk" || is_end_of_file(one)
                                       : share_of(one) >= settings::kTrace);

@@ -1,4 +1,4 @@
-// What was left out of recordings, and what was put right in them, as lines for people.
+// Data left out of recordings, and data put right in them, as lines for people.
 #pragma once
 
 #include <string>
@@ -9,7 +9,7 @@
 
 namespace odomcalib::cli {
 
-/// What of it is more than a trace and is not among the reasons of the verdict, most first: at most
+/// Items left out that are more than a trace and not among the reasons of the verdict, most first: at most
 /// settings::kLeftOutLines.
 std::vector<std::string> left_out_lines(const Calibration& calibration);
 

@@ -193,7 +193,7 @@ class OriginEditor {
     return {};
   }
 
-  /// What is not there is zero.
+  /// Absent values are zero.
   Result<void> add(const char* name, const std::array<std::optional<double>, 3>& wanted) {
     std::array<double, 3> values{};
     for (std::size_t i = 0; i < 3; ++i) values.at(i) = wanted.at(i).value_or(0.0);

@@ -60,7 +60,7 @@ Error malformed(const std::string& what) {
   return {ErrorCode::format, what, "motion", "odomcalibctl and odomcalibd must be of one version"};
 }
 
-/// Of the way of the first move: what a person measures is the way out.
+/// Whether a move goes the way of the first: a person measures the way out.
 bool goes_out(const ordered_json& move, double first) {
   return (*numbers<3>(move, "odometry"))[0] * first > 0.0;
 }

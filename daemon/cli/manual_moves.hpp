@@ -1,4 +1,4 @@
-// What straight lines, turns on the spot and squares come to: corrected lengths from the moves that the
+// Results of straight lines, turns on the spot and squares: corrected lengths from the moves that the
 // daemon reported, by its lidar or by what a person measured.
 #pragma once
 
@@ -44,7 +44,7 @@ Result<Proposal> square_proposal(const DrivenMoves& driven, double side);
 
 nlohmann::ordered_json to_json(const Proposal& proposal);
 std::vector<std::string> to_lines(const Proposal& proposal);
-/// That puts the proposal into force.
+/// Command that puts the proposal into force.
 std::string next_command(const Proposal& proposal);
 /// A calibration of these lengths alone, for `apply`.
 Calibration calibration_of(const Proposal& proposal, const DrivenMoves& driven);

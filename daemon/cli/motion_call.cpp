@@ -20,7 +20,7 @@ namespace {
 
 using nlohmann::ordered_json;
 
-/// What a person should know before it moves.
+/// Facts that a person should know before it moves.
 struct Prospect {
   std::string drawing;        ///< the space that it requires (rule M10)
   std::string besides;        ///< what of it the lidar would not see
@@ -74,7 +74,7 @@ std::string user_name() {
   return user != nullptr ? user->pw_name : "user " + std::to_string(getuid());
 }
 
-/// What would be in force afterwards, and what whoever consents vouches for.
+/// The values that would be in force afterwards, and what whoever consents vouches for.
 std::string write_question(const ordered_json& plan) {
   std::string text;
   if (plan.contains("goes_to")) text = "It goes back to " + plan.value("goes_to", "") + ":";
@@ -88,7 +88,7 @@ std::string write_question(const ordered_json& plan) {
   return text;
 }
 
-// What the motion would be, or the write-back, from the daemon that would do it.
+// Prospect of the motion, or of the write-back, from the daemon that would do it.
 Result<Prospect> prospect_of(const Session& session, const std::string& method, ordered_json parameters) {
   auto client = Client::connect(session.socket);
   if (!client) return client.error();

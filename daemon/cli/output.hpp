@@ -1,4 +1,4 @@
-// What verbs print, and where: results on standard output, everything else on standard error.
+// Output of verbs: results on standard output, everything else on standard error.
 #pragma once
 
 #include <chrono>
@@ -65,7 +65,7 @@ void tell(const std::string& text);
 /// A message on standard error; the verb goes on.
 void warn(const std::string& text);
 
-/// What was printed must have arrived (a full disk, a closed pipe). Call once, at the very end.
+/// Printed text must have arrived (a full disk, a closed pipe). Call once, at the very end.
 /// @return `status`, or failure where it would have been success
 int after_flush(int status);
 

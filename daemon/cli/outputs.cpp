@@ -9,7 +9,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// What is no regular file (a terminal, /dev/null) loses nothing when it is named twice.
+/// Anything but a regular file (a terminal, /dev/null) loses nothing when it is named twice.
 bool is_kept(const fs::path& path) {
   std::error_code error;
   const auto status = fs::status(path, error);

@@ -88,7 +88,7 @@ std::string outcome_of(const ordered_json& entry) {
   return outcome + (entry["proven"] == true ? ", proven" : ", unproven");
 }
 
-// What was written, or would be, in place of what.
+// The values that were written, or would be, and those that they replace.
 Section change_section(const ordered_json& result) {
   Section section{"", {}, {{"", "old -> new, mm"}, {}}};
   const auto after = result.value("after", ordered_json::object());

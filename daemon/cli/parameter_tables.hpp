@@ -14,7 +14,7 @@ Document describe_history(const nlohmann::ordered_json& entries);
 /// @param result of Apply or Rollback: outcome, steps, parameters
 Document describe_write_back(const nlohmann::ordered_json& result);
 
-/// What is possible: name, outcome, what was found, remedy.
+/// Checks of what is possible: name, outcome, what was found, remedy.
 Document describe_checks(const nlohmann::ordered_json& checks);
 
 }  // namespace odomcalib::cli

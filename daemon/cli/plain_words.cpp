@@ -129,7 +129,7 @@ std::string remedy_of(const Calibration& calibration, const std::string& effect)
   return "not corrected: of this place, day or drive";
 }
 
-/// Of a wheel that is off its centre two parameters are one size.
+/// Finding for a wheel that is off its centre: two parameters are one size.
 std::optional<Finding> off_centre(const Calibration& calibration, const EffectResult& effect,
                                   const std::string& side) {
   double square = 0.0;

@@ -1,5 +1,5 @@
-// What a calibration found, in words and numbers for people who do not know its parameters by name. Terminal,
-// page, mechanic's sheet and certificate say it alike.
+// Findings of a calibration, in words and numbers for people who do not know its parameters by name.
+// Terminal, page, mechanic's sheet and certificate say it alike.
 #pragma once
 
 #include <optional>

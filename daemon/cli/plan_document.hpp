@@ -1,4 +1,4 @@
-// What a motion would be, before it is driven: the way, the space that it requires as a drawing with numbers,
+// Plan of a motion, before it is driven: the way, the space that it requires as a drawing with numbers,
 // and what limits it.
 #pragma once
 

@@ -27,7 +27,7 @@ UnpackLimit unpack_limit_of(double mebibytes);
 /// --robot, --robot-id, --topic and --unpack-limit, alike for every verb that reads recordings.
 void add_reading_options(CLI::App& verb, RecordingOptions& options);
 
-/// What --topic says. Error: usage.
+/// Topics chosen by --topic. Error: usage.
 Result<TopicChoices> topic_choices_of(const RecordingOptions& options);
 
 /// Nominal values of --robot and --robot-id; zero and empty where they say nothing. Errors of the file.
@@ -36,7 +36,7 @@ Result<RobotDescription> robot_of(const RecordingOptions& options);
 /// With nominal values in place of its own, as far as they are stated.
 Recording with_nominal(Recording recording, RobotDescription robot);
 
-/// Which one was taken where a file holds several stands on standard error, a line each.
+/// Where a file holds several of a kind, the one taken is named on standard error, a line each.
 Result<std::vector<Recording>> read_recordings(const std::vector<std::string>& paths,
                                                const RecordingOptions& options);
 

@@ -46,7 +46,7 @@ table,figure{break-inside:avoid}p:has(+table),p:has(+figure){break-after:avoid}.
 .fold>section{margin-bottom:.5em}svg text{font-size:17px}}
 )";
 
-/// Of a refused calibration there is no gain to be proud of: the sentence says what it would be.
+/// A refused calibration has no gain to be proud of: the sentence says what it would be.
 std::string sizes_of(const Calibration& calibration, const std::vector<Gain>& gains) {
   if (calibration.verdict == Verdict::refused) return "";
   std::string out;
@@ -62,7 +62,7 @@ std::string sizes_of(const Calibration& calibration, const std::vector<Gain>& ga
   return out.empty() ? "" : "<div class=\"sizes\">\n" + out + "</div>\n";
 }
 
-/// What shows the gain on data that was not fitted: how the error grows with the way; where an effect was
+/// Figures of the gain on data that was not fitted: how the error grows with the way; where an effect was
 /// found, also the residual over its variable.
 std::vector<Figure> first_figures(const Calibration& calibration, const ReportData& data) {
   std::vector<Figure> figures;

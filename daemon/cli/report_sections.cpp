@@ -44,7 +44,7 @@ std::vector<std::string> error_row(const DriveError& error, bool geometry, bool 
   return row;
 }
 
-/// What is systematic in the residual: RMS over the means of sixteenths.
+/// Systematic part of the residual: RMS over the means of sixteenths.
 double systematic(const ResidualTrace& trace, double ResidualTrace::Bin::*member) {
   double sum = 0.0;
   for (const auto& bin : trace.bins) sum += bin.*member * bin.*member;

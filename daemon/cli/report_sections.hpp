@@ -15,7 +15,7 @@ Section traces_section(const ReportData& data);
 /// test.
 /// @param meanings whether a column says what each is, for which a terminal has no room
 Section not_found_section(const ReportData& data, bool meanings);
-/// Of the effects that were found.
+/// Meanings of the effects that were found.
 Section meanings_section(const Calibration& calibration);
 inline constexpr const char* kDriveTitle = "The drive";
 Section path_section(const ReportData& data);

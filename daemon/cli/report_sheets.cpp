@@ -52,7 +52,7 @@ Table table_of(const std::vector<Finding>& findings) {
   return table;
 }
 
-/// What nobody can tell from this drive.
+/// Effects that nobody can recognise from this drive.
 std::string untested_line(const ReportData& data) {
   std::string names, last;
   for (const Detectable& effect : data.detectable) {

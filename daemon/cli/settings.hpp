@@ -106,11 +106,11 @@ inline constexpr double kAmclStep_m = 0.25, kAmclTurn_rad = 0.2;
 /// rate at which ros2_control publishes odometry by default.
 inline constexpr double kSpeedOfNoise = 0.5, kRateOfNoise = 50.0;
 
-/// Of slam_toolbox's matcher: m and rad between two scans, m of the grid, m that its points are smeared by,
-/// rad of the fine search. Published: config/mapper_params_online_async.yaml.
+/// Defaults of slam_toolbox's matcher: m and rad between two scans, m of the grid, m that its points are
+/// smeared by, rad of the fine search. Published: config/mapper_params_online_async.yaml.
 inline constexpr double kSlamStep_m = 0.5, kSlamTurn_rad = 0.5;
 inline constexpr double kSlamGrid_m = 0.01, kSlamSmear_m = 0.1, kSlamFine_rad = 0.00349;
-/// What the square of a distance counts in its penalty. Published: Mapper.cpp, DISTANCE_PENALTY_GAIN and
+/// Weight of the square of a distance in its penalty. Published: Mapper.cpp, DISTANCE_PENALTY_GAIN and
 /// ANGLE_PENALTY_GAIN.
 inline constexpr double kSlamGain = 0.2;
 /// m to what a lidar sees. Chosen: rooms; farther walls tell a heading better.

@@ -15,7 +15,7 @@ std::string status_text(const ordered_json& value) {
   return value.is_string() ? value.get<std::string>() : value.dump();
 }
 
-/// Of a recording: what it holds of each kind of motion, and what a solve would miss.
+/// Rows of a recording: what it holds of each kind of motion, and what a solve would miss.
 std::vector<std::vector<std::string>> motion_rows(const ordered_json& motion) {
   const auto degrees = [&](const char* way) {
     return fmt::format("{} {} ({:.0f} deg)", motion[way]["stretches"].get<int>(), way,
@@ -45,7 +45,7 @@ Document describe_status(const ordered_json& status) {
   const auto& lidar = status["lidar"];
   Section section;
   auto& rows = section.table.rows;
-  // What there is nothing to say of has no row.
+  // An empty text gets no row.
   const auto add = [&rows](const char* what, const std::string& text) {
     if (!text.empty()) rows.push_back({what, text});
   };

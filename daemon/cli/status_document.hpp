@@ -1,4 +1,4 @@
-// What the service answers to `status`, for people.
+// Answer of the service to `status`, for people.
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>

@@ -38,7 +38,7 @@ std::pair<std::size_t, std::size_t> stretch(const Lines& before, std::size_t i, 
 }
 
 std::string range(std::size_t from, std::size_t count) {
-  // Of no lines, diff names the one before.
+  // A range of no lines is named by the line before, as diff does.
   const std::size_t line = count == 0 ? from : from + 1;
   return count == 1 ? fmt::format("{}", line) : fmt::format("{},{}", line, count);
 }

@@ -9,7 +9,7 @@
 
 namespace odomcalib::cli {
 
-/// What stands there, and what shall stand there in its place.
+/// A stretch of a text and its replacement.
 struct TextEdit {
   std::size_t at = 0, length = 0;  ///< bytes
   std::string text;
@@ -27,7 +27,7 @@ std::optional<double> number_in(std::string_view text);
 /// The shortest text that reads back to the same number, and is no whole number to YAML: 1.0.
 std::string real_text(double number);
 
-/// Of a byte of the text, from 1.
+/// Line of a byte of the text, from 1.
 std::size_t line_of(std::string_view text, std::size_t at);
 
 }  // namespace odomcalib::cli

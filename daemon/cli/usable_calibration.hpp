@@ -8,7 +8,7 @@
 
 namespace odomcalib::cli {
 
-/// Whose values are all finite. Error: io, format.
+/// A calibration whose values are all finite. Error: io, format.
 Result<Calibration> read_finite_calibration(const std::string& path);
 
 /// Wheel diameters and track width, as they are needed to drive by. Error: refused, when the file says so

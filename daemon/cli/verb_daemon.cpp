@@ -22,7 +22,7 @@ namespace {
 using nlohmann::ordered_json;
 using Printer = std::function<void(const ordered_json&, const Session&)>;
 
-/// What is asked, and what the answer is printed as.
+/// A call, and the form in which its answer is printed.
 struct Question {
   std::string method;
   std::string member;    ///< of the answer that is printed; empty: all of it

@@ -1,4 +1,4 @@
-// What a recording holds and what solve would take of it, before anything is measured.
+// Content of a recording and what solve would take of it, before anything is measured.
 #include <CLI/CLI.hpp>
 #include <memory>
 #include <nlohmann/json.hpp>

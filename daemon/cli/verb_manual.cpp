@@ -69,7 +69,7 @@ Result<std::vector<double>> measured_values(const ManualOptions& options, double
   return values;
 }
 
-/// What a person reads; an answer that is no number is asked for again.
+/// Number that a person reads; an answer that is no number is asked for again.
 Result<double> asked(const std::string& question, double unit) {
   for (std::string line; std::cerr << question << std::flush, std::getline(std::cin, line);) {
     auto value = number_of(line, unit);
@@ -140,7 +140,7 @@ Result<Outcome> drive(const Session& session, ManualOptions options, const std::
   return outcome;
 }
 
-/// What was driven before, as --json printed it.
+/// The moves driven before, as --json printed them.
 Result<DrivenMoves> read_moves(const std::string& path) {
   const auto bytes = read_file_bytes(path);
   if (!bytes) return bytes.error();

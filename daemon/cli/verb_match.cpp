@@ -57,7 +57,7 @@ std::optional<std::array<double, 3>> guess_of(const ordered_json& pair) {
   return guess;
 }
 
-/// Of this thread: what other programs take of the processor is no cost of the match.
+/// Processor time of this thread: what other programs take of the processor is no cost of the match.
 std::chrono::microseconds processor_time() {
   timespec now{};
   clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);

@@ -1,4 +1,4 @@
-// What happens in the daemon while it happens: events, and its state when it changes.
+// Events in the daemon as they happen, and its state when it changes.
 #include <fmt/chrono.h>
 #include <fmt/format.h>
 

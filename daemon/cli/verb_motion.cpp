@@ -96,8 +96,8 @@ int report_lost(Error error, const Solved& solved) {
   return report_error(error, JsonMode::off);
 }
 
-// What --apply needs beside a calibration: a controller whose odometry shows what was written, and its errors
-// before.
+// Requirements of --apply beside a calibration: a controller whose odometry shows what was written, and its
+// errors before.
 Result<std::optional<DriveErrors>> before_apply(const Session& session, const MotionOptions& options,
                                                 const RunMethod& run) {
   if (!options.apply) return std::optional<DriveErrors>();

@@ -50,7 +50,7 @@ Result<Calibration> chosen_calibration(const PredictOptions& options, const Robo
   return calibration;
 }
 
-// What a reader of the trajectory must know, and would not see from it.
+// Facts that a reader of the trajectory must know, and would not see from it.
 void warn_of(const Calibration& calibration, const std::string& where) {
   if (calibration.verdict == Verdict::refused && where != "nominal")
     warn(refusal_of(calibration, where).text() + "; its values are used all the same");
@@ -97,7 +97,7 @@ Result<Predicted> predicted(const PredictOptions& options) {
                    left_out_of(recording), recording.repairs};
 }
 
-/// Of the last pose; nullopt where nobody stated the noise.
+/// Standard deviation of the last pose; nullopt where nobody stated the noise.
 std::optional<std::array<double, 3>> deviation_of(const Predicted& found, const std::vector<double>& noise) {
   if (noise.empty()) return std::nullopt;
   return calib::odometry::deviation_at_end(found.poses, {noise.at(0), noise.at(1), noise.at(2)},

@@ -48,7 +48,7 @@ Result<void> write_results(const SolveArguments& options, const calib::Solution&
   return {};
 }
 
-// What a reader of the file must know to repeat the run.
+// Settings that a reader of the file must know to repeat the run.
 std::string settings_of(const SolveArguments& options) {
   nlohmann::ordered_json settings = {{"version", kVersion}, {"effects", options.effects}};
   if (!options.scale.empty()) settings["scale"] = options.scale;
@@ -80,7 +80,7 @@ std::optional<Error> wrong_sensor(const SolveArguments& options, const std::vect
                                : fmt::format("there are: {}", fmt::join(sensors, ", "))};
 }
 
-/// What is wrong with a recording shows in what it holds, where the error does not say what to type.
+/// Where the error does not say what to type, the content of the recording shows what is wrong with it.
 int report_unreadable(const Error& error, const std::vector<std::string>& recordings, JsonMode json) {
   const int status = report_error(error, json);
   const bool said = error.remedy.find("odomcalibctl ") != std::string::npos;

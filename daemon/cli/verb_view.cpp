@@ -70,7 +70,7 @@ class Watch {
     return {};
   }
 
-  /// What is new at the daemon; afterwards messages until the time.
+  /// Takes what is new at the daemon; afterwards messages until the time.
   void serve(Clock::time_point until) {
     if (const auto done = client_ ? look() : try_again(); !done) {
       client_.reset();

@@ -32,7 +32,7 @@ class Deadline {
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin_).count();
   }
   [[nodiscard]] bool over() const { return elapsed() >= seconds_; }
-  /// What is left, at most so much.
+  /// Time that is left, at most so much.
   [[nodiscard]] std::chrono::milliseconds left(std::chrono::milliseconds most) const {
     const std::chrono::duration<double> rest(std::max(0.0, seconds_ - elapsed()));
     return std::min(most, std::chrono::ceil<std::chrono::milliseconds>(rest));
@@ -55,7 +55,7 @@ Result<ordered_json> answer_of(Client& client, const char* method, const char* m
   return body[member];
 }
 
-/// What is missing, for people; empty: nothing. Errors: those of the client.
+/// Missing conditions, in words for people; empty: none. Errors: those of the client.
 Result<std::string> missing_for(const std::string& socket, bool ready, const Deadline& deadline) {
   auto client = Client::connect(socket);
   if (!client) return client.error();

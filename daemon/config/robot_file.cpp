@@ -41,7 +41,7 @@ constexpr std::array kTranslations = {
     Translation{"laser_pose", "lidar_pose = [x, y, yaw], in m and rad"},
 };
 
-// What odomcalib.toml holds beside the robot's geometry.
+// Keys of odomcalib.toml beside the robot's geometry.
 constexpr std::array kOtherKeys = {"controller.", "lidar.",      "limits.",    "lcm.",
                                    "daemon.",     "robot.front", "robot.back", "robot.width"};
 

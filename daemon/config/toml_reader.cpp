@@ -65,7 +65,7 @@ void collect_leaves(const toml::table& table, const std::string& prefix, std::se
   }
 }
 
-/// What people write who know another format.
+/// Remedy for a line as people write it who know another format.
 std::string syntax_remedy(const std::string& text, std::size_t line) {
   std::istringstream lines(text);
   std::string wrong;

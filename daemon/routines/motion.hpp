@@ -37,7 +37,7 @@ struct Limits {
   double turn_acceleration = settings::kCapTurnAcceleration;  ///< rad/s^2
 };
 
-/// What no configuration can raise (rule M7).
+/// Caps that no configuration can raise (rule M7).
 constexpr Limits kCaps{};
 
 /// The wanted limits, each lowered to its cap; a value that is no positive number becomes the cap.

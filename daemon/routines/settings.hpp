@@ -28,7 +28,7 @@ inline constexpr double kLeastHaste = 0.1;
 
 // --- Repetitions -----------------------------------------------------------------------------------------
 
-/// Of a motion in one call. Chosen. The text that refuses more says it too.
+/// Repetitions of a motion in one call. Chosen. The text that refuses more says it too.
 inline constexpr int kMostRepeats = 20;
 
 // --- Preview ---------------------------------------------------------------------------------------------

@@ -36,7 +36,7 @@ Signs turned(const Hypothesis& h, const Signs& commanded) {
   return real;
 }
 
-/// What the counts say then.
+/// Signs that the counts show then.
 Signs counted(const Hypothesis& h, Signs real) {
   for (std::size_t i = 0; i < 2; ++i)
     if (at_counter(h.inverted[i])) real[i] = -real[i];

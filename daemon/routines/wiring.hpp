@@ -1,9 +1,9 @@
-// Which wire goes where? A nudge of a few centimetres ahead and a few degrees to the left, at speeds that are
-// commanded and not controlled, tells by its signs alone: which way each count went, and how the lidar saw
+// Where does each wire go? A nudge of a few centimetres ahead and a few degrees to the left, at speeds
+// commanded and not controlled, shows it by its signs alone: which way each count went, and how the lidar saw
 // itself move. Every combination of faults predicts these signs; the combination with the fewest faults that
 // predicts what was seen is the explanation, before anything is fitted.
 //
-// What a nudge cannot tell: a world seen in a mirror is a possible world. With the lidar's zero towards the
+// Limit of a nudge: a world seen in a mirror is a possible world. With the lidar's zero towards the
 // front, both wheels exchanged and a lidar upside down look the same. Then both are named, and a look at the
 // robot decides.
 #pragma once
@@ -20,7 +20,7 @@ namespace odomcalib::routines {
 /// Two moves, each undone by its opposite, driven by time and not by counts: wrong counts must not steer.
 Plan nudge_plan(const Limits& limits);
 
-/// What one of the two moves did; what its opposite did is turned round and averaged in.
+/// Result of one of the two moves; that of its opposite is turned round and averaged in.
 struct NudgeMove {
   std::array<double, 2> commanded{};  ///< rad of the left and the right wheel, forward positive
   std::array<double, 2> counted{};    ///< rad, as the counts of left and right say

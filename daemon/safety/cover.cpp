@@ -59,7 +59,7 @@ std::vector<Pose> turn_on_the_spot() {
   return out;
 }
 
-/// Of a move at its full pace.
+/// Twist of a move at its full pace.
 Twist fastest_twist(const Move& move, const routines::Limits& limits) {
   const Twist direction = move.heading ? Twist{0.0, 1.0} : move.direction;
   Move resolved = move;

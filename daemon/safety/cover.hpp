@@ -21,7 +21,7 @@ struct Sector {
 /// "135 to 225 deg", joined by commas; 0 is ahead, 90 left.
 std::string text_of(const std::vector<Sector>& sectors);
 
-/// What is hidden from the lidar.
+/// Area hidden from the lidar.
 class BlindArea {
  public:
   static constexpr std::size_t kBins = settings::kBins;

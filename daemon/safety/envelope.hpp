@@ -8,7 +8,7 @@
 
 namespace odomcalib::safety {
 
-/// What one run may use up, from the preview of its plan.
+/// Limits of one run, from the preview of its plan.
 struct Envelope {
   double reach = 0.0;  ///< m from the start
   double turn = 0.0;   ///< rad, largest heading away from the start's, continuous over full turns

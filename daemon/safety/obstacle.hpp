@@ -72,7 +72,7 @@ class ObstacleGuard {
   /// And the drive as it brakes. @param overrun s, see Braking
   void brakes(double overrun) { overrun_ = overrun; }
   [[nodiscard]] bool blocked() const { return nearest_.has_value(); }
-  /// What blocks, and where; nullopt: nothing.
+  /// The obstacle that blocks, and where; nullopt: none.
   [[nodiscard]] std::optional<std::string> obstacle() const;
   /// With what was measured of lidar and drive.
   [[nodiscard]] ObstacleOptions options() const;

@@ -73,8 +73,8 @@ Result<void> BaseLink::open_port() {
   return {};
 }
 
-// What arrived is dated by a clock that is read as it is read: a turn that was held up in between would date
-// it wrongly.
+// Arrivals are dated by a clock that is read with them: a turn that was held up in between would date
+// them wrongly.
 void BaseLink::receive(const Clock& clock) {
   if (!transport_ || !connected_) return;
   const double now = clock.now();

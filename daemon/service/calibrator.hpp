@@ -1,4 +1,4 @@
-// What the daemon needs of calib, as functions: the loop is tested without solving anything.
+// Functions of calib that the daemon needs: the loop is tested without solving anything.
 #pragma once
 
 #include <array>
@@ -35,8 +35,8 @@ struct Calibrator {
   using Solve = std::function<Result<Calibration>(const std::vector<std::filesystem::path>& recordings,
                                                   const std::vector<std::string>& effects, const Progress&)>;
 
-  /// Of the recordings of one robot, jointly. Runs in a thread of its own. What its progress report throws
-  /// ends it.
+  /// Solves the recordings of one robot, jointly. Runs in a thread of its own. An exception from its progress
+  /// report ends it.
   Solve solve;
   /// Why effects of these names cannot be fitted. May be empty: any name is taken then.
   std::function<std::optional<Error>(const std::vector<std::string>&)> wrong_effects;

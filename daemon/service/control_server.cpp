@@ -199,7 +199,7 @@ void ControlServer::State::accept_one(int fd) {
   client.name = fmt::format("user {}, process {}", peer.uid, peer.pid);
   client.user = peer.uid;
   client.spare = spare;
-  // What it came with counts at once: it may be a stop.
+  // Data that came with the connection counts at once: it may be a stop.
   read_from(client);
   ++next;
 }
@@ -219,7 +219,7 @@ void ControlServer::State::drop_oldest_spare() {
   clients.erase(oldest);
 }
 
-// What was asked for before a stop must not begin after it.
+// Calls made before a stop must not begin after it.
 void ControlServer::State::stopped() {
   stop = true;
   for (auto& [id, client] : clients)
@@ -266,7 +266,7 @@ std::map<ClientId, Client>::iterator ControlServer::State::next_client() {
   return wrapped == behind ? clients.end() : wrapped;
 }
 
-// What is no call is counted and ends the connection; it is not answered.
+// A frame that is no call is counted and ends the connection; it is not answered.
 std::optional<control::Call> ControlServer::State::decode(Client& client, const std::string& frame) {
   auto call = control::decode_call(frame);
   if (call) return answer_some(client, std::move(call).value());

@@ -1,4 +1,4 @@
-// What came of the moves of a motion, beside its recording.
+// Outcome of the moves of a motion, beside its recording.
 #pragma once
 
 #include <array>
@@ -54,8 +54,8 @@ class MovesReport {
   std::size_t next_ = 0;
 };
 
-/// Of a nudge: {"checks": these rows of `check` with one or more about the wiring, "wiring": what was
-/// measured}
+/// Report of a nudge: {"checks": these rows of `check` with one or more about the wiring, "wiring": what
+/// was measured}
 ordered_json nudge_report(ordered_json checks, const Calibrator& calibrator, const RobotDescription& robot,
                           const std::vector<Leg>& legs);
 

@@ -37,7 +37,7 @@ class LidarLink {
   [[nodiscard]] const std::string& device() const { return device_; }
   /// Host that is named in the device and has to be looked up; empty where its address is in numbers.
   [[nodiscard]] std::string host_name() const;
-  /// What the name stood for when the connection was made; empty before, and without a name.
+  /// Address that the name stood for when the connection was made; empty before, and without a name.
   [[nodiscard]] const std::string& found_address() const { return found_address_; }
   /// As the device states it; empty before.
   [[nodiscard]] std::string identity() const { return lidar_->identity(); }
@@ -50,7 +50,7 @@ class LidarLink {
     unsigned baud = 0;
     drivers::ModemLines lines;
   };
-  /// What had come at the beginning of the watched interval.
+  /// Counts at the beginning of the watched interval.
   struct Watch {
     double since = 0.0;
     std::uint64_t bytes = 0, good = 0;

@@ -23,7 +23,7 @@ class LoopGuard {
   /// taken @param taken of each name, so far: bytes, frames, pieces of work. What wakes the loop and is not
   /// taken wakes it again.
   void turned(bool at_once, bool served, std::span<const std::uint64_t> taken);
-  /// What it hangs at; empty: nothing.
+  /// The point at which it hangs; empty: none.
   [[nodiscard]] const std::string& hangs_at() const { return hangs_at_; }
 
  private:

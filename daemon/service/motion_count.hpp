@@ -1,4 +1,4 @@
-// What a recording holds of each kind of motion, while it is made: whether a solve makes sense yet.
+// Amount of each kind of motion in a recording, while it is made: whether a solve makes sense yet.
 #pragma once
 
 #include <cstddef>
@@ -23,7 +23,7 @@ class MotionCount {
   [[nodiscard]] const Kind& straight() const { return straight_; }
   [[nodiscard]] const Kind& left() const { return left_; }
   [[nodiscard]] const Kind& right() const { return right_; }
-  /// What the classical methods refuse to do without, as a sentence each; empty when nothing is.
+  /// Missing requirements of the classical methods, as a sentence each; empty when there are none.
   [[nodiscard]] std::vector<std::string> missing() const;
 
  private:

@@ -1,4 +1,4 @@
-// What must be true before the robot may move.
+// Conditions that must hold before the robot may move.
 #pragma once
 
 #include <optional>

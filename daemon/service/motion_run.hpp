@@ -24,7 +24,7 @@ struct Leg {
   std::vector<Scan> scans_before, scans_after;  ///< a few, all of them taken at rest, oldest first
 };
 
-/// What the world looks like at one control step.
+/// State of the world at one control step.
 struct Situation {
   double now = 0.0;
   routines::Pose odometry;
@@ -67,9 +67,9 @@ class MotionRun {
   [[nodiscard]] bool driving() const { return phase_ == Phase::driving; }
   /// Name of the phase, or of the move.
   [[nodiscard]] std::string activity() const;
-  /// Of the drive, s, as it was planned.
+  /// Remaining time of the drive, s, as it was planned.
   [[nodiscard]] double remaining() const;
-  /// Of the drive's planned time, in [0, 1].
+  /// Elapsed share of the drive's planned time, in [0, 1].
   [[nodiscard]] double fraction() const;
 
  private:

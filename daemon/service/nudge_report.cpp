@@ -1,4 +1,4 @@
-// What a nudge of each wheel shows about the wiring.
+// Findings on the wiring from a nudge of each wheel.
 
 #include <fmt/format.h>
 

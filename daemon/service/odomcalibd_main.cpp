@@ -76,7 +76,7 @@ class Log {
   odomcalib::DiskWorker worker_;
 };
 
-// What systemd is told. Asked for by the loop itself: a loop that hangs asks for nothing. Sent beside it: a
+// Messages to systemd. Requested by the loop itself: a loop that hangs requests none. Sent beside it: a
 // manager that is busy takes messages late.
 class Watchdog {
  public:

@@ -38,8 +38,8 @@ class Publisher {
   /// @param url empty: publish nothing
   /// @param open called in the sender's thread, which may outlive this when the network holds it
   Publisher(std::string url, std::string prefix, Open open = open_lcm);
-  /// What waits is sent where that takes no time; a thread that the network holds is left to the end of the
-  /// process.
+  /// Waiting messages are sent where that takes no time; a thread that the network holds is left to the
+  /// end of the process.
   ~Publisher();
   Publisher(const Publisher&) = delete;
   Publisher& operator=(const Publisher&) = delete;

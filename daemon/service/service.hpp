@@ -44,7 +44,7 @@ class Service {
   [[nodiscard]] bool writing() const;
   /// One line for systemd's STATUS and for people.
   [[nodiscard]] std::string status_line() const;
-  /// What `odomcalibctl status --json` prints.
+  /// Output of `odomcalibctl status --json`.
   [[nodiscard]] std::string status_json() const;
 
  private:

@@ -12,8 +12,8 @@
 
 namespace odomcalib {
 
-/// What the loop sends on of a calibration. The solver's thread makes it: on a small computer it takes longer
-/// than the drive waits for a sign of life.
+/// Parts of a calibration that the loop sends on. The solver's thread makes them: on a small computer it
+/// takes longer than the drive waits for a sign of life.
 struct Solution {
   std::string calibration;       ///< JSON text, as in a file
   std::string reply;             ///< frame for the caller

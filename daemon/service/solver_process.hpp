@@ -22,7 +22,7 @@ struct SolverProcess {
 /// Error: what the solver says; io when it ended without an answer.
 Calibrator::Solve solve_in_process(const SolverProcess& process);
 
-/// What that process does: limits itself, solves, and answers on descriptor 3 as on the control socket.
+/// Work of that process: limits itself, solves, and answers on descriptor 3 as on the control socket.
 /// @return exit status
 int answer_with_solution(const Calibrator::Solve& solve, const std::vector<std::filesystem::path>& recordings,
                          const std::vector<std::string>& effects, std::uint32_t memory);

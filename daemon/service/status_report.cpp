@@ -18,7 +18,7 @@ ordered_json check(const std::string& name, bool good, const std::string& found,
       {"name", name}, {"outcome", good ? "ok" : "fail"}, {"found", found}, {"remedy", good ? "" : remedy}};
 }
 
-/// What the lidar does not see is no failure: it is to be looked at by somebody.
+/// A blind area of the lidar is no failure: it is to be looked at by somebody.
 ordered_json view_check(const std::vector<safety::Sector>& blind) {
   if (blind.empty()) return check("lidar view", true, "all around", "");
   return {{"name", "lidar view"},
@@ -27,7 +27,7 @@ ordered_json view_check(const std::vector<safety::Sector>& blind) {
           {"remedy", "moves that go there need somebody who vouches for them: see that this area is free"}};
 }
 
-/// What was edited since counts from the next start on: a robot that moves is not configured anew.
+/// Later edits count from the next start on: a robot that moves is not configured anew.
 std::optional<ordered_json> config_check(const Config& config) {
   if (config.file.empty()) return std::nullopt;
   std::error_code error;
@@ -41,7 +41,7 @@ std::optional<ordered_json> config_check(const Config& config) {
       {"remedy", "systemctl restart odomcalib"}};
 }
 
-/// What the controller refused is said here too, not in the journal alone.
+/// Refusals of the controller are stated here too, not in the journal alone.
 ordered_json controller_check(const Drive& drive) {
   using drivers::ControllerState;
   const auto state = drive.controller().state();
@@ -104,14 +104,14 @@ std::string found_at(bool connected, const std::optional<Error>& problem) {
   return connected ? "open" : "not open yet";
 }
 
-/// Of a lidar whose host is named: what the name stands for, so that a wrong one is seen.
+/// Address that the name of a lidar's host stands for, so that a wrong one is seen.
 std::string by_name(const LidarLink& link) {
   const std::string name = link.host_name();
   if (name.empty() || link.found_address().empty()) return "";
   return ", " + name + " is " + link.found_address();
 }
 
-// What a controller cannot hold stays on the host, value by value.
+// Values that a controller cannot hold stay on the host, one by one.
 void add_host_values(const std::vector<HostValue>& values, ordered_json& list) {
   for (const HostValue& value : values)
     list.push_back({{"name", value.name},
@@ -349,7 +349,7 @@ ordered_json parameter_report(const Drive& drive, const Calibrator& calibrator,
     if (value > 0.0) entry["value"] = value;
     const auto calibrated = calibration ? calibration->parameter(name) : std::nullopt;
     if (calibrated) entry["calibrated"] = *calibrated;
-    // What rounding in the controller leaves over is applied in the corrected odometry.
+    // The remainder of rounding in the controller is applied in the corrected odometry.
     if (calibrated) entry["remainder"] = *calibrated - value;
     entry["stored_in"] = stored ? "controller" : "host";
     entry["applied_in"] =

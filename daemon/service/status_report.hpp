@@ -1,4 +1,4 @@
-// What the service reports of itself, as `odomcalibctl status`, `check` and `params get` show it.
+// Reports of the service on itself, as `odomcalibctl status`, `check` and `params get` show them.
 #pragma once
 
 #include "daemon/service/tasks/task.hpp"
@@ -7,7 +7,7 @@ namespace odomcalib {
 
 /// @param task that runs, or null
 std::string activity(const RobotParts& parts, const Task* task);
-/// That, and which devices are missing: for systemd's STATUS.
+/// The activity, and which devices are missing: for systemd's STATUS.
 std::string one_line(const RobotParts& parts, const Task* task);
 ordered_json status_report(const RobotParts& parts, const Task* task);
 /// The newest scan: points [x, y], m in the frame of the base, thinned; none where no current scan arrives.

@@ -1,4 +1,4 @@
-// What leaves the daemon without being asked for: LCM messages and recordings, the same bytes for both.
+// Unrequested output of the daemon: LCM messages and recordings, the same bytes for both.
 #pragma once
 
 #include <cstdint>

@@ -24,7 +24,7 @@ std::string text_of(int policy, int priority) {
   return fmt::format("no real-time priority, niceness {}", getpriority(PRIO_PROCESS, 0));
 }
 
-/// What is in memory now, and whatever comes into it, stays: pages that are not used yet cost nothing.
+/// Pages in memory now, and those that come into it later, stay: pages that are not used yet cost nothing.
 /// With a limit below what will be needed, a later thread or recording would find no memory at all.
 bool lock_memory() {
   rlimit limit{};

@@ -1,4 +1,4 @@
-// What must be true before values are written to the controller.
+// Conditions that must hold before values are written to the controller.
 #pragma once
 
 #include <map>

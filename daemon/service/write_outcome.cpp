@@ -25,7 +25,7 @@ bool known_already(const History& history, const HistoryEntry& entry) {
          newest.after == entry.after;
 }
 
-/// What the history gets; nullopt: nothing was touched, or it says so already.
+/// The entry for the history; nullopt: nothing was touched, or it says so already.
 std::optional<HistoryEntry> entry_of(const RobotParts& parts, const WriteReport& report) {
   if (report.steps.empty()) return std::nullopt;
   const History& history = parts.write_back.history;
@@ -42,7 +42,7 @@ std::optional<HistoryEntry> entry_of(const RobotParts& parts, const WriteReport&
   return entry.id.empty() ? history.numbered(std::move(entry)) : std::move(entry);
 }
 
-/// What an end leaves on the disk, filled in beside the loop.
+/// Records that an end leaves on the disk, filled in beside the loop.
 struct Settlement {
   std::string calibration;  // id, see CalibrationInForce
   std::optional<HistoryEntry> entry;

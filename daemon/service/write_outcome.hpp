@@ -1,4 +1,4 @@
-// What the service makes of the end of a write-back: committed, rolled back or unknown.
+// Handling of the end of a write-back by the service: committed, rolled back or unknown.
 #pragma once
 
 #include "daemon/service/parts/robot_parts.hpp"

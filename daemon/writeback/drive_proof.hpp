@@ -11,7 +11,7 @@
 
 namespace odomcalib {
 
-/// What odometry is off by against the lidar, root mean squares over the moves.
+/// Errors of odometry against the lidar, root mean squares over the moves.
 struct DriveErrors {
   double metre_length = 0.0;   ///< m per metre of a straight
   double metre_heading = 0.0;  ///< rad per metre of a straight
@@ -46,7 +46,7 @@ class DrivenErrors {
   bool straight_ = false, turn_ = false;
 };
 
-/// What is worse than before, by more than the comparison can tell; nullopt: nothing.
+/// Errors worse than before, by more than the comparison can resolve; nullopt: none.
 std::optional<std::string> worse(const DriveErrors& before, const DriveErrors& after);
 
 class DriveProof {

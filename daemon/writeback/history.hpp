@@ -1,5 +1,5 @@
-// What was written to the controller, when, and what was in force before: one file an entry. The entries are
-// read once: who asks for them does not wait for a disk.
+// Values written to the controller, when, and those in force before: one file an entry. The entries are
+// read once: a client that requests them does not wait for a disk.
 #pragma once
 
 #include <cstdint>
@@ -27,7 +27,7 @@ struct HistoryEntry {
   Provenance origin = {};
 };
 
-/// What a record with which a write-back ended says of it, but for the calibration's text.
+/// Entry from the record with which a write-back ended, but for the calibration's text.
 HistoryEntry entry_of(const JournalRecord& end);
 
 std::string to_json(const HistoryEntry& entry, bool with_calibration);
@@ -47,7 +47,7 @@ class History {
   [[nodiscard]] Result<void> write(const HistoryEntry& entry) const;
   /// Takes over a numbered entry, in the place of one with the same id.
   void keep(HistoryEntry entry);
-  /// Of the journal's ends those of which there is no entry, or another one, as far back as entries are kept.
+  /// Those ends of the journal without an entry, or with another one, as far back as entries are kept.
   [[nodiscard]] std::vector<JournalRecord> missing(const std::vector<JournalRecord>& ends) const;
 
   /// Newest first.

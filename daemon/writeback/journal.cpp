@@ -28,7 +28,7 @@ std::optional<JournalState> state_named(const std::string& name) {
   return std::nullopt;
 }
 
-// What a record of an earlier version, which did not say it, leaves possible.
+// Whether values may have been stored, by a record of an earlier version, which did not say it.
 bool may_have_stored(JournalState state) {
   return state != JournalState::begin && state != JournalState::write && state != JournalState::readback_ok;
 }
@@ -131,7 +131,7 @@ Result<Journal> Journal::open(const std::filesystem::path& path) {
   if (auto synced = sync_folder(path); !synced) return synced.error();
   const auto bytes = journal.read_lines();
   if (!bytes) return bytes.error();
-  // What the records of an unfinished one need is left to them: they are written over it.
+  // Space that the records of an unfinished write-back need is left to them: they are written over it.
   const bool needless = !journal.unfinished() && journal.size_ < bytes.value();
   if (needless && ftruncate(fd, static_cast<off_t>(journal.size_)) != 0) return failed(path);
   return journal;

@@ -1,4 +1,4 @@
-// What a write-back was about to do, on the disk before it does it: append-only lines, each with its CRC.
+// Steps of a write-back, on the disk before it takes them: append-only lines, each with its CRC.
 // Until one has ended, zeros behind the last line hold the space for the records that may follow.
 #pragma once
 

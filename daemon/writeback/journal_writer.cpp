@@ -16,7 +16,7 @@ void JournalWriter::append(JournalRecord record) {
   before_ = journal_.last();
   pending_ = true;
   result_.reset();
-  // What has not come to its end is not on the disk.
+  // An unfinished write is not on the disk.
   const auto written =
       std::make_shared<Result<void>>(Error{ErrorCode::io, "the record was not written", "journal", ""});
   background_.post(

@@ -18,14 +18,14 @@ class JournalWriter {
   void append(JournalRecord record);
   /// A record is on its way.
   [[nodiscard]] bool pending() const { return pending_; }
-  /// Of the newest append(), once: on the disk, or the error (io) for which it is not.
+  /// Result of the newest append(), once: on the disk, or the error (io) for which it is not.
   [[nodiscard]] std::optional<Result<void>> take_result();
 
   /// The newest record on the disk, if any.
   [[nodiscard]] const std::optional<JournalRecord>& last() const {
     return pending_ ? before_ : journal_.last();
   }
-  /// That record when its write-back was not brought to an end.
+  /// The newest record on the disk, when its write-back was not brought to an end.
   [[nodiscard]] std::optional<JournalRecord> unfinished() const { return unfinished_of(last()); }
 
  private:

@@ -1,5 +1,5 @@
-// Of a write-back: whose wish it was, what its values were held to, and what speaks for them. Journal and
-// history keep it.
+// Provenance of a write-back: whose wish it was, what its values were held to, and what speaks for them.
+// Journal and history keep it.
 #pragma once
 
 #include <cstdint>
@@ -32,7 +32,7 @@ void write_provenance(const Provenance& from, Json& body) {
   body["proven"] = from.proven;
 }
 
-/// Of earlier versions nothing is known. Throws what Json throws for members of another type.
+/// Nothing is known of earlier versions. Throws what Json throws for members of another type.
 template <typename Json>
 Provenance read_provenance(const Json& body) {
   Provenance out;

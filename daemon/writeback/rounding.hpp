@@ -1,4 +1,4 @@
-// What a controller can hold is rounded to its steps. The roundings are chosen together, so that the odometry
+// Values are rounded to the steps of the controller. The roundings are chosen together, so that the odometry
 // made from them errs least; what remains is reported, and the host applies the exact values.
 #pragma once
 

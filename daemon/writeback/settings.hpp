@@ -30,7 +30,7 @@ inline constexpr double kSameStep = 0.51, kSame_m = 1e-9;
 
 // --- Proof by a drive ------------------------------------------------------------------------------------
 
-/// What a comparison of scans at rest cannot tell: m over a metre, rad over a turn. Chosen: two to three
+/// Noise of a comparison of scans at rest: m over a metre, rad over a turn. Chosen: two to three
 /// times the largest error after a calibration in simulated campaigns, and below what a wheel of 0.3 % makes.
 inline constexpr double kLengthNoise_m = 0.002, kHeadingNoise_rad = 0.1 * std::numbers::pi / 180.0;
 /// m and rad of a move that counts. Chosen: nearly half of what `calibrate --apply` drives.

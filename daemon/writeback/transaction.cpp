@@ -184,7 +184,7 @@ void Transaction::go_on_announcing() {
   proceed(after_);
 }
 
-/// What it announces must not happen: nothing has been touched yet, or everything goes back.
+/// The announced step must not happen: nothing has been touched yet, or everything goes back.
 void Transaction::not_announced(const Error& why) {
   announced_.clear();
   announcing_ = false;
@@ -341,7 +341,7 @@ void Transaction::plan_write() {
   begin_writing();
 }
 
-/// What was read may be a mixture that nobody ever wanted. It must not become the values to go back to.
+/// The values read may be a mixture that nobody ever wanted. They must not become the values to go back to.
 void Transaction::take_old_from_journal() {
   store_begun_ = interrupted_->store_begun;
   const bool new_in_force = nearly_done(*interrupted_) && holds(report_.in_force, interrupted_->after);
@@ -351,7 +351,7 @@ void Transaction::take_old_from_journal() {
 }
 
 void Transaction::begin_writing() {
-  // What a controller has no place for is kept on the host: nothing that a crash could leave half done.
+  // Values that have no place in a controller stay on the host: nothing that a crash could leave half done.
   if (report_.after.empty()) return finish(WriteOutcome::committed);
   announce({JournalState::begin, JournalState::write}, After::write_new);
 }
@@ -394,7 +394,7 @@ void Transaction::go_back(const Error& why) {
 
 void Transaction::on_old_written(const Job& job) {
   const bool restored = !job.error && holds(job.parameters, report_.before);
-  // What refuses its old value may never have lost it: that is seen, not concluded.
+  // A controller that refuses its old values may never have lost them: that is seen, not concluded.
   if (!restored && !store_begun_) return start(Phase::verify_old);
   if (!restored) return finish(WriteOutcome::unknown);
   report_.in_force = job.parameters;

@@ -65,7 +65,7 @@ class Transaction {
   [[nodiscard]] bool busy() const { return phase_ != Phase::idle; }
   /// Once, when it has ended, and once before that where new values wait for their proof.
   std::optional<WriteReport> take_report();
-  /// What is on the disk.
+  /// The journal on the disk.
   [[nodiscard]] const JournalWriter& journal() const { return journal_; }
 
  private:
@@ -129,7 +129,7 @@ class Transaction {
   bool unproven_ = false;      // the new values are to be proven before they are stored
   std::optional<Result<void>> proof_;
   double entered_ = 0.0;
-  // Of the step that is done now.
+  // Controller and times of the present step.
   drivers::Controller* controller_ = nullptr;
   double now_ = 0.0;
   std::int64_t wall_us_ = 0;

@@ -1,4 +1,4 @@
-// What every motor controller looks like to the daemon. A controller is a pure state machine: frames or bytes
+// Interface of every motor controller to the daemon. A controller is a pure state machine: frames or bytes
 // and time in, frames or bytes and events out; it holds no file descriptor and no clock, so a test or a
 // replay drives it directly.
 #pragma once
@@ -53,8 +53,8 @@ struct ParameterJobResult {
   std::vector<StoredParameter> parameters;  ///< read: what the controller holds; write: what was read back
 };
 
-/// What the controller can do with one quantity of the robot's geometry. What it cannot hold stays on the
-/// host.
+/// Capability of the controller for one quantity of the robot's geometry. Quantities it cannot hold stay on
+/// the host.
 struct Capability {
   std::string quantity;
   bool readable = false, writable = false;
@@ -62,7 +62,7 @@ struct Capability {
   std::string object;   ///< where it is held, in the controller's own terms; empty: nowhere
   double step = 0.0;    ///< SI, of one count; 0: not held
 };
-/// Of a controller that holds no geometry.
+/// Capabilities of a controller that holds no geometry.
 std::vector<Capability> host_capabilities();
 
 enum class Wire { can, serial };

@@ -28,8 +28,8 @@ class CandumpReader {
   /// bytes_in = good + skipped + buffered (a line cut off at the end); fd_frame, bad_line; time_backwards
   /// counts frames that are older than the one before, as when several interfaces are mixed.
   [[nodiscard]] Counters counters() const;
-  /// Of a whole log without a frame: error format when it is candump's output on the screen, which has no
-  /// dates that can be trusted, or another program's log. Nothing of a log that is merely damaged.
+  /// Problem of a whole log without a frame: error format when it is candump's output on the screen, which
+  /// has no dates that can be trusted, or another program's log. Nothing of a log that is merely damaged.
   /// @param where name of the file
   [[nodiscard]] std::optional<Error> problem(const std::string& where) const;
 

@@ -85,7 +85,7 @@ class SlcanTransport final : public CanTransport {
     return {ErrorCode::device, what, name_, remedy};
   }
   Result<void> begin(Step step, double now, const std::string& command, double patience);
-  /// What has arrived for the step that is under way; nullopt: not yet.
+  /// Answer to the step that is under way; nullopt: not yet.
   Result<std::optional<Answer>> answer(double now);
   Result<void> next(Answer given, double now);
 

@@ -12,8 +12,8 @@ namespace odomcalib::drivers {
 
 struct SlcanOptions {
   unsigned bitrate = 500'000;  ///< bit/s on the CAN side
-  /// Of the serial side. Unset: a USB-CDC device, which sends a line at once whatever rate is set; frames
-  /// then carry the time of their arrival, because no transfer time is known.
+  /// Baud rate of the serial side. Unset: a USB-CDC device, which sends a line at once whatever rate is set;
+  /// frames then carry the time of their arrival, because no transfer time is known.
   std::optional<unsigned> baud;
   bool timestamps = false;  ///< ask the adapter for its own millisecond stamps
 };

@@ -35,7 +35,7 @@ Error bus_off(const std::string& interface) {
       "see to wiring, termination and bit rate, then: ip link set " + interface + " type can restart");
 }
 
-/// Of an interface that is up.
+/// Whether an interface that is up has a carrier.
 bool has_carrier(const std::string& interface) {
   std::ifstream file("/sys/class/net/" + interface + "/carrier");
   return file.get() != '0';

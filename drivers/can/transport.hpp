@@ -42,7 +42,7 @@ class CanTransport {
   [[nodiscard]] virtual Counters counters() const = 0;
   /// Bytes or frames that were taken from the line so far, whatever became of them.
   [[nodiscard]] virtual std::uint64_t taken() const = 0;
-  /// What a person should know of a bus that is open all the same; empty: nothing.
+  /// Notice for people about a bus that is open all the same; empty: none.
   [[nodiscard]] virtual std::string note() const { return {}; }
 };
 

@@ -170,7 +170,7 @@ class CanopenLog {
     return line;
   }
 
-  /// What the identifier was last said to carry. Where the log does not say it, a pair's drive is mapped as
+  /// Mapping last stated for the identifier. Where the log does not state it, a pair's drive is mapped as
   /// the profile would set it, if the frame is as long; otherwise as CiA 402 predefines it.
   const NodePdo* mapping_of(const CanFrame& frame) {
     for (const NodePdo& known : pdos_)

@@ -101,7 +101,7 @@ class Feeder {
       take_scans();
     }
   }
-  /// What was begun will never be completed.
+  /// Input that was begun will never be completed.
   void interrupt() {
     lidar_.finish();
     take_scans();

@@ -36,7 +36,7 @@ inline nlohmann::ordered_json tick_line(const TickSample& sample) {
   return line;
 }
 
-/// What is to be said of a reading beside its sample; null when it is plain motion.
+/// Remark on a reading beside its sample; null when it is plain motion.
 inline nlohmann::ordered_json count_note(Side side, std::int64_t raw, double t,
                                          const WheelCounts::Reading& reading) {
   using enum TickUnwrap::Reading::Kind;

@@ -14,7 +14,7 @@ class SpeedLog {
  public:
   explicit SpeedLog(const Profile& profile) : counts_(profile) {}
 
-  /// What the protocol understood since the last call.
+  /// Lines of everything that the protocol understood since the last call.
   std::string lines_of(SpeedProtocol& protocol) {
     std::string out;
     for (const DeviceMessage& message : protocol.take_messages()) out += line_of(message).dump() + "\n";

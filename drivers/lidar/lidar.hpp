@@ -1,5 +1,5 @@
-// What every 2D lidar looks like to the daemon: bytes and time in, scans and bytes out. No file descriptor,
-// no clock.
+// Interface of every 2D lidar to the daemon: bytes and time in, scans and bytes out. No file descriptor, no
+// clock.
 #pragma once
 
 #include <cstdint>
@@ -49,7 +49,7 @@ class Lidar {
   virtual std::vector<LidarScan> take_scans() = 0;
   /// Bytes to send to the device: the dialogue that identifies, configures and starts it.
   virtual std::vector<std::uint8_t> take_output() { return {}; }
-  /// What stops the device, to be sent before the connection is closed on purpose.
+  /// Bytes that stop the device, to be sent before the connection is closed on purpose.
   [[nodiscard]] virtual std::vector<std::uint8_t> stop_bytes() const { return {}; }
   /// The connection was lost or is new: forget everything buffered and begin the dialogue again.
   virtual void reset() = 0;
@@ -61,8 +61,7 @@ class Lidar {
   [[nodiscard]] virtual Counters rejected() const = 0;
   /// Model, firmware, serial number as the device told them; empty before.
   [[nodiscard]] virtual std::string identity() const { return {}; }
-  /// What the device itself says is wrong, or that it does not answer; with code format, what is wrong with
-  /// its data.
+  /// Fault that the device itself reports, or that it does not answer; with code format, a fault of its data.
   [[nodiscard]] virtual std::optional<Error> problem() const { return std::nullopt; }
 
   using Listener = std::function<void(LidarMessage)>;
@@ -81,7 +80,7 @@ class Lidar {
 /// @param type a name of lidar_types(), e.g. "ld06", "ydlidar:x4"
 Result<std::unique_ptr<Lidar>> make_lidar(const std::string& type, const LidarOptions& options);
 
-/// What the daemon must know of a type before it opens the device.
+/// Properties of a type that the daemon must know before it opens the device.
 struct LidarType {
   std::string name;
   unsigned baud = 0;   ///< usual rate of the serial line; 0: the network only

@@ -66,8 +66,8 @@ class TtyPort final : public ByteStream {
     return out;
   }
 
-  /// What does not fit is dropped, but never in part: the rest of something that was begun goes first, so
-  /// that no half of a line is glued to the next one.
+  /// Bytes that do not fit are dropped, but never in part: the rest of something that was begun goes first,
+  /// so that no half of a line is glued to the next one.
   Result<void> write(std::span<const std::uint8_t> bytes) override {
     const auto begun = put(rest_);
     if (!begun) return begun.error();

@@ -1,4 +1,4 @@
-// What both nodes have in common, without ROS: joint states in, the numbers of nav_msgs/Odometry out.
+// Common part of both nodes, without ROS: joint states in, the numbers of nav_msgs/Odometry out.
 #pragma once
 
 #include <array>

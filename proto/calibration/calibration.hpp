@@ -125,7 +125,7 @@ std::optional<std::string> non_finite_value(const Calibration& calibration);
 /// JSON text with two-space indent and a fixed member order (same input, same bytes). Non-finite numbers
 /// become null.
 std::string to_json(const Calibration& calibration);
-/// What an error begins with where the file is of a version of the format that this program does not read.
+/// Beginning of the error about a file in a version of the format that this program does not read.
 inline constexpr const char* kOtherVersion =
     "is a calibration file of a version that this program does not read";
 Result<Calibration> calibration_from_json(const std::string& text, const std::string& where);

@@ -1,5 +1,5 @@
-// What a report shows beyond the contract of the calibration file: errors that a user feels, and the points
-// of its pictures. Additive members `drive_errors`, `detectable` and `picture` of the file.
+// Data of a report beyond the contract of the calibration file: errors that a user feels, and the points of
+// its pictures. Additive members `drive_errors`, `detectable` and `picture` of the file.
 #pragma once
 
 #include <array>
@@ -106,7 +106,7 @@ inline constexpr const char* kPictureMember = "picture";
 
 /// Puts the data into the calibration's additive members, rounded to what a picture can show.
 void store_report_data(const ReportData& data, Calibration& calibration);
-/// What is there of it; members that are absent or not understood are empty.
+/// The report data of a calibration; members that are absent or not understood are empty.
 ReportData report_data_of(const Calibration& calibration);
 
 }  // namespace odomcalib

@@ -15,8 +15,8 @@ struct Kind {
   bool motion = false;       ///< the wheels' motion is computed from these
 };
 
-/// What of a recording is of use for a calibration. The rest of a file (messages of other topics, a second
-/// robot line) is nobody's loss, and a lidar in an open room has empty beams.
+/// Parts of a recording that are of use for a calibration. The rest of a file (messages of other topics, a
+/// second robot line) is nobody's loss, and a lidar in an open room has empty beams.
 constexpr std::array kKinds = {Kind{kInterval, "intervals between counts", true},
                                Kind{"ticks", "counts", true},
                                Kind{"wheels", "wheel angles", true},

@@ -1,4 +1,4 @@
-// What was left out of a recording, in words: the same in every verb.
+// Left-out parts of a recording, in words: the same in every verb.
 #pragma once
 
 #include <optional>
@@ -19,7 +19,7 @@ bool is_end_of_file(const Discarded& one);
 /// Gives what the file ends in the time of the last sample that could be read.
 void tell_where_it_ends(Recording& recording);
 
-/// Of a recording, with ways between counts by their own name.
+/// Left-out parts of a recording, with ways between counts by their own name.
 std::vector<Discarded> left_out_of(const Recording& recording);
 
 /// Whether what is gone may be missed: not what a lidar does not see, what is there in a finer form, or what

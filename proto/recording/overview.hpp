@@ -1,4 +1,4 @@
-// What a file holds beside what a recording is made of: its form, and the topics of a ROS recording.
+// Properties of a file beside the recording itself: its form, and the topics of a ROS recording.
 #pragma once
 
 #include <cstddef>

@@ -136,7 +136,7 @@ Error not_understood(const std::string& text) {
           "pose"};
 }
 
-/// Of the whole file, packed or not.
+/// Reads the content of the whole file, packed or not.
 Result<Recording> read_file_content(const std::string& bytes, const std::filesystem::path& name,
                                     const RobotDescription* fallback, const TopicChoices& topics,
                                     const UnpackLimit& limit, Overview& overview) {
@@ -238,7 +238,7 @@ Result<Recording> read_folder(const std::filesystem::path& folder, const RobotDe
   return recording;
 }
 
-/// What SQLite has not moved into the file yet: a recorder that was killed leaves it beside.
+/// Whether changes wait that SQLite has not moved into the file: a killed recorder leaves them beside it.
 bool has_write_ahead_log(const std::filesystem::path& path) {
   std::error_code none;
   return std::filesystem::file_size(path.string() + "-wal", none) > 0 && !none;

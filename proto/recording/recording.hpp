@@ -36,7 +36,7 @@ inline constexpr const char* kOfAnotherSensor = "of another sensor";
 /// Reason of single counts that were taken for what lies between their neighbours.
 inline constexpr const char* kMisread = "count read wrong once";
 
-/// What a recording tells the motion of the wheels with, the finest first. One of them decides.
+/// Ways in which a recording states the motion of the wheels, the finest first. One of them decides.
 enum class MotionSource { ticks, wheels, wheel_speeds, odometry };
 
 /// The name of its lines in JSON Lines, and of its part in TopicChoice.
@@ -56,7 +56,7 @@ struct Recording {
   /// s since 1970 at which t is 0, where times count from a second of the file; 0: they are as recorded.
   double time_zero = 0.0;
   MotionSource motion = MotionSource::ticks;
-  // What `ticks` were made of, as recorded; empty but for the one that `motion` names.
+  // Sources of `ticks`, as recorded; empty but for the one that `motion` names.
   std::vector<WheelSample> wheels;        ///< rad
   std::vector<WheelSample> wheel_speeds;  ///< rad/s
   std::vector<PoseSample> odometry;       ///< computed by the robot with the nominal values

@@ -434,7 +434,7 @@ void RecordingBuilder::count_on() {
     if (ticks[i].segment == ticks[i - 1].segment || given[i].segment != given[i - 1].segment) continue;
     for (const double t : {ticks[i - 1].t, ticks[i].t}) include(discarded_[{"ticks", kUncontinued}], t);
   }
-  // What was added to a count that is taken for another was not added to its neighbours.
+  // The correction of a misread count differs from the one that its neighbours share.
   const auto added = [&](std::size_t i) {
     return std::array{ticks[i].left - given[i].left, ticks[i].right - given[i].right};
   };

@@ -114,7 +114,7 @@ class LcmLeftovers {
   std::vector<std::uint64_t> seen_;
 };
 
-/// What a log holds, from a first pass over its fingerprints.
+/// Content of a log, from a first pass over its fingerprints.
 struct Content {
   bool own = false;
   bool old_encoders = false;

@@ -1,4 +1,4 @@
-// What a scan must hold before anything else sees it. Internal to proto/.
+// Conditions that a scan must meet before anything else sees it. Internal to proto/.
 #pragma once
 
 #include <cstddef>

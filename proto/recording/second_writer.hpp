@@ -13,8 +13,8 @@ namespace odomcalib {
 /// One sample of a stream: the two wheels, or x, y and yaw.
 using Values = std::array<double, 3>;
 
-/// Which samples are such a value; empty where there is no second writer. A robot that stands repeats a value
-/// as well, but the values around it are near.
+/// Indices of the samples with such a value; empty where there is no second writer. A robot that stands
+/// repeats a value as well, but the values around it are near.
 /// @param samples in time order
 std::vector<std::size_t> of_second_writer(std::span<const Values> samples);
 

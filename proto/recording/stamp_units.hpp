@@ -18,7 +18,7 @@ std::string stamp_reason(const char* unit);
 /// The unit that such a reason names; empty for every other reason.
 std::string unit_of_reason(const std::string& reason);
 
-/// What to tell of samples that were left out for such a stamp.
+/// Error about samples that were left out for such a stamp.
 /// @param what of the discarded samples: "ticks", "scan", "pose"
 Error wrong_dates(const std::string& what, std::size_t count, const std::string& unit,
                   const std::string& where);

@@ -113,7 +113,7 @@ class Speeds {
     return static_cast<double>(change) * metres_per_tick_ / usual_interval(interval);
   }
   [[nodiscard]] double usual_interval(double interval) const { return std::max(interval, floor_); }
-  /// Of one count in an interval: what a slow wheel seems to have, or not, by when its count comes.
+  /// Speed of one count in an interval: a slow wheel seems to have it, or not, by when its count comes.
   [[nodiscard]] double of_one_count(double interval) const { return (*this)(1, interval); }
   [[nodiscard]] bool possible(std::int64_t change, double interval) const {
     return !known() || std::abs((*this)(change, interval)) <= stretch_ * kFastest + of_one_count(interval);

@@ -18,7 +18,7 @@ struct SideSample {
   double value = 0.0;  ///< rad or rad/s
 };
 
-/// What a value means between two samples.
+/// Meaning of a value between two samples.
 enum class Between : std::uint8_t {
   linear,  ///< angles; those that a driver keeps within one turn are continued first
   held     ///< speeds

@@ -10,8 +10,8 @@ namespace {
 
 constexpr double kTurn = 2.0 * std::numbers::pi;
 constexpr double kMostCounts = 9007199254740992.0;  // 2^53: beyond it a count is no exact double
-// Of a count. Angles that an encoder made deviate from its grid by the rounding of a double (1e-4 counts
-// after a million turns of 4096 counts) or of a text with six decimals (1e-3 counts); of angles from
+// Tolerance, in counts. Angles that an encoder made deviate from its grid by the rounding of a double (1e-4
+// counts after a million turns of 4096 counts) or of a text with six decimals (1e-3 counts); of angles from
 // elsewhere every second one deviates by more than a quarter.
 constexpr double kOnGrid = 0.05;
 

@@ -12,7 +12,7 @@
 
 namespace odomcalib {
 
-/// What the recording formats know; every other member is skipped.
+/// Scalars that the recording formats know; every other member is skipped.
 enum class Scalar : std::uint8_t {
   t,
   left,
@@ -63,7 +63,7 @@ struct JsonFields {
   /// Elements that are not numbers are NaN; null in ranges and intensities is 0.
   std::array<std::vector<double>, static_cast<std::size_t>(Array::count)> arrays;
   std::array<std::string, static_cast<std::size_t>(Text::count)> texts;
-  /// Which scalars were written at all, number or not.
+  /// Scalars that were written at all, number or not.
   std::array<bool, static_cast<std::size_t>(Scalar::count)> present{};
 
   void clear();

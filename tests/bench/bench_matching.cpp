@@ -80,7 +80,7 @@ bool compare(double cell) {
   return equal == kCases;
 }
 
-/// What a climb from the window's centre gives away, and takes, beside brute force over the whole window.
+/// Score lost and time taken by a climb from the window's centre, beside brute force over the whole window.
 void print_climb(double cell, const calib::matching::SearchWindow& window,
                  const calib::matching::ClimbOptions& options) {
   std::mt19937 engine(2);

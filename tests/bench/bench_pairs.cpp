@@ -25,7 +25,7 @@ namespace {
 constexpr double kAstray = 0.05;                          // m
 constexpr double kAstrayTurn = calib::math::kPi / 180.0;  // rad
 
-// Of the floor: it may stop where it moves by a hundredth of its error, and pairs swap to and fro beyond.
+// End of the floor's iterations: where it moves by a hundredth of its error; pairs swap to and fro beyond.
 constexpr double kSettled = 1e-5;  // m and rad
 constexpr int kFloorIterations = 20;
 

@@ -1,4 +1,4 @@
-// What the daemon publishes, with the times at which the kernel and this program saw it.
+// Messages that the daemon publishes, with the times at which the kernel and this program saw them.
 #pragma once
 
 #include <lcm/lcm.h>

@@ -1,4 +1,4 @@
-// What bench_pairs compares: one function for each matcher, each in a file of its own, since the libraries'
+// Matchers that bench_pairs compares: one function for each, each in a file of its own, since the libraries'
 // headers do not agree with each other.
 #pragma once
 

@@ -15,7 +15,7 @@ bool contains(const std::vector<std::string>& list, const std::string& text) {
   return std::find(list.begin(), list.end(), text) != list.end();
 }
 
-/// What the solver may call a variable of the simulator.
+/// Names that the solver may give to a variable of the simulator.
 const std::map<std::string, std::set<std::string>>& same_variables() {
   static const std::map<std::string, std::set<std::string>> kSame = {
       {"acceleration", {"left_acceleration", "right_acceleration", "acceleration"}},
@@ -39,7 +39,7 @@ const std::map<std::string, std::set<std::string>>& same_variables() {
   return kSame;
 }
 
-/// What an effect of the catalogue depends on, in the solver's words.
+/// Variables that an effect of the catalogue depends on, in the solver's words.
 const std::map<std::string, std::set<std::string>>& variables_of_names() {
   static const std::map<std::string, std::set<std::string>> kOf = {
       {"acceleration_slip", {"left_acceleration", "right_acceleration"}},

@@ -1,4 +1,4 @@
-// What a blind campaign says, as a table in Markdown.
+// Results of a blind campaign, as a table in Markdown.
 #pragma once
 
 #include <string>

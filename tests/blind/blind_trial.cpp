@@ -49,8 +49,8 @@ double mean_lateness(const std::vector<Sample>& samples, const std::vector<doubl
   return sum / std::max(1.0, static_cast<double>(samples.size()));
 }
 
-/// What has to be added to the encoders' stamps to get the world's time, s. Which of two clocks is late no
-/// data can tell, so the reported delay is freed from what the scans of the solved recording were late.
+/// Time to add to the encoders' stamps to get the world's time, s. No data show which of two clocks is late,
+/// so the reported delay is freed from what the scans of the solved recording were late.
 double stamp_correction(const Calibration& calibration, const sim::SimulatedRun& solved) {
   for (const EffectResult& effect : calibration.effects)
     if (effect.name == "time_offset")

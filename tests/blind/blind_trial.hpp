@@ -38,7 +38,7 @@ struct Trial {
   bool refused = false;
 };
 
-/// What all solutions of one recording are judged by.
+/// Data by which all solutions of one recording are judged.
 struct Examination {
   sim::BlindCase drawn;
   sim::BlindProof proof;
@@ -51,7 +51,7 @@ struct Solution {
   Calibration calibration;
   double seconds = 0.0;  ///< CPU
 };
-/// Of the drawn recording.
+/// Solution of the drawn recording.
 Solution solution_of(const Examination& examination, const calib::selection::RuleSet& rules);
 
 /// The solution against the truth.

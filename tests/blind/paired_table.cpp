@@ -28,7 +28,7 @@ std::vector<Pair> pairs_of(const std::vector<Trial>& one, const std::vector<Tria
   return pairs;
 }
 
-/// What one may be right in.
+/// A question that a trial may get right.
 struct Question {
   const char* text;
   bool (*concerns)(const Trial&);

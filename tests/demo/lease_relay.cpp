@@ -25,7 +25,7 @@ std::optional<sockaddr_un> address_of(const std::filesystem::path& path) {
   return address;
 }
 
-/// What has arrived, and whether the other end is still there.
+/// Reads all bytes that have arrived. Whether the other end is still there.
 bool read_all(int fd, std::string& bytes) {
   std::array<char, 65536> buffer;
   for (;;) {

@@ -25,7 +25,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     const auto again = parse_candump_line(candump_line(*frame, "can0"));
     if (!again || !same(*again, *frame)) std::abort();
   }
-  // What the file is instead is only asked where nothing in it was good.
+  // Another form of the file is only considered where nothing in it was good.
   const auto problem = reader.problem("fuzz");
   const auto counters = reader.counters();
   if (problem && counters.at("good") != 0) std::abort();

@@ -15,7 +15,7 @@ std::string without_end(std::string frame) {
   return frame;
 }
 
-/// What was accepted must survive its own encoding, and what is answered must be a reply.
+/// An accepted call must survive its own encoding, and every answer must be a reply.
 void check(const Call& call) {
   if (!decode_call(without_end(encode_call(call))).ok()) std::abort();
   const auto answer = answer_introspection(call, ServiceInfo{});

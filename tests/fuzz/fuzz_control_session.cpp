@@ -210,7 +210,7 @@ const std::vector<std::string>& usual_calls() {
   return kCalls;
 }
 
-/// What must not be, unless for as long as stopping takes.
+/// A state that must not last longer than stopping takes.
 class Late {
  public:
   void check(bool wrong) {
@@ -330,7 +330,7 @@ class Session {
     for (const control::Call& call : peer.put(with_lease(given))) note(call);
     unlooked_ = unlooked_ || peer.refused();
   }
-  /// What a call may mean for a robot that moves. A stop that is spelled with escapes waits for its turn.
+  /// Notes a call's meaning for a robot that moves. A stop that is spelled with escapes waits for its turn.
   void note(const control::Call& call) {
     if (!lease_.empty() &&
         call.parameters.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace).find(lease_) !=

@@ -15,7 +15,7 @@ namespace {
 
 using odomcalib::fuzz::require;
 
-/// What is left of the input, taken from the front; zeros once it has come to its end.
+/// Rest of the input, taken from the front; zeros once it has come to its end.
 class Bytes {
  public:
   Bytes(const std::uint8_t* data, std::size_t size) : data_(data), size_(size) {}

@@ -24,7 +24,7 @@ Profile profile_of(const char* name) {
   return profile;
 }
 
-/// What a program says to the device while its bytes come in.
+/// Calls that a program makes while the device's bytes come in.
 void drive(SpeedProtocol& protocol, double now) {
   protocol.greet(now);
   protocol.engage();

@@ -28,7 +28,7 @@ inline void check_accounting(const drivers::Counters& counters) {
   require(counters.at("bytes_in") == counters.at("good") + counters.at("skipped") + counters.at("buffered"));
 }
 
-/// What a new connection brings is read as if nothing had been before.
+/// Bytes of a new connection are read as if nothing had been before.
 inline void start_anew(drivers::Lidar& lidar, std::span<const std::uint8_t> bytes) {
   constexpr std::size_t kSome = 64;
   lidar.reset();

@@ -1,5 +1,5 @@
-// What every recording parser must hold, whatever the bytes: sorted streams, finite numbers, and a result
-// that survives writing and reading.
+// Properties of every recording parser, whatever the bytes: sorted streams, finite numbers, and a result that
+// survives writing and reading.
 #pragma once
 
 #include <algorithm>

@@ -24,7 +24,7 @@ class SessionRobot {
     while (body_.time() + half < wanted_) step();
   }
 
-  /// What the program sends.
+  /// Takes a frame that the program sends.
   void receive(const drivers::CanFrame& given) {
     sim::Frame frame;
     frame.id = given.id;
@@ -34,7 +34,7 @@ class SessionRobot {
     frame.data = given.data;
     node_.receive(frame, body_.time());
   }
-  /// What the program finds on its bus.
+  /// Frames that the program finds on its bus.
   std::vector<drivers::CanFrame> take_frames(double now) {
     std::vector<drivers::CanFrame> out;
     for (const sim::Frame& given : std::exchange(frames_, {})) {

@@ -1,7 +1,7 @@
-// Which inputs a harness looks at thoroughly. What follows from the bytes alone is checked for every input;
-// checks that take longer than parsing (counting after every read, another object that reads the same in
-// other pieces) for one in sixteen while fuzzing, chosen by a hash of the input so that a finding repeats,
-// and for each one in a replay.
+// Choice of the inputs that a harness looks at thoroughly. Everything that follows from the bytes alone is
+// checked for every input; checks that take longer than parsing (counting after every read, another object
+// that reads the same in other pieces) for one in sixteen while fuzzing, chosen by a hash of the input so
+// that a finding repeats, and for each one in a replay.
 #pragma once
 
 #include <cstddef>

@@ -47,7 +47,7 @@ std::ostream& operator<<(std::ostream& out, const Machine& machine) { return out
 
 class OtherMachines : public ::testing::TestWithParam<Machine> {};
 
-/// What a robot without any effect must not get: an effect, or lengths that are off by more than is said.
+/// A robot without any effect must get no effect, and no lengths that are off by more than is said.
 TEST_P(OtherMachines, are_calibrated_as_honestly) {
   const Machine& machine = GetParam();
   sim::SimulationConfig config = sim::standard_config(7);

@@ -1,5 +1,5 @@
-// What a program on the same machine, or its disk, may do to a daemon while its robot moves or its values are
-// written: nothing of it is felt. Whole programs in real time, bounded in number and time.
+// Attacks on a daemon by a program on the same machine, or by its disk, while its robot moves or its values
+// are written: nothing of them is felt. Whole programs in real time, bounded in number and time.
 #include <gtest/gtest.h>
 #include <stdlib.h>
 

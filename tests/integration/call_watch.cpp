@@ -30,7 +30,7 @@ namespace {
 constexpr int kLongestPoll_ms = 20;  // of a turn at rest
 constexpr int kDrain = 0x5409;       // TCSBRK: tcdrain()
 
-/// What a call is, and how to tell from its arguments whether it may wait.
+/// Kinds of calls, by how their arguments show whether they may wait.
 enum class Kind { always, by_descriptor, by_message_flags, open, wait, lock, poll, poll_for, drain };
 struct Call {
   const char* name;
@@ -93,7 +93,7 @@ std::string path_of(pid_t pid, int fd) {
   return std::filesystem::read_symlink(path, ignored).string();
 }
 
-/// Of something that makes callers wait: no file on a disk, and not opened to return at once.
+/// Whether a descriptor makes callers wait: it is no file on a disk, and was not opened to return at once.
 bool blocks(pid_t pid, int fd) {
   const std::string of_process = "/proc/" + std::to_string(pid);
   struct stat status {};
@@ -140,7 +140,7 @@ std::string shown(const Call& call, const std::string& what) {
   return std::string(call.name) + "(" + what + ")";
 }
 
-/// What the call may wait for; nullopt: for nothing.
+/// The call with what it may wait for; nullopt: it waits for nothing.
 std::optional<std::string> may_wait(const Call& call, pid_t pid, const seccomp_data& data) {
   const int fd = static_cast<int>(data.args[0]);
   const auto given = [&](bool waits, const std::string& what) {

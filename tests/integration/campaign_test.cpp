@@ -15,7 +15,7 @@ namespace {
 
 using Raw = std::array<std::uint32_t, 3>;
 
-// What a comparison of two scans at rest cannot tell.
+// Differences that a comparison of two scans at rest cannot resolve.
 constexpr double kDistanceNoise = 0.002;          // m
 constexpr double kTurnNoise = 0.1 / 57.29577951;  // rad
 constexpr double kShareBetter = 0.99;
@@ -57,7 +57,7 @@ class Campaign : public WholeLoop {
   cli::RunMethod method() {
     return [this](const std::string& name,
                   const nlohmann::ordered_json& parameters) -> Result<nlohmann::ordered_json> {
-      // What is to be proven lasts as long as the connection that wrote it.
+      // Values to be proven last as long as the connection that wrote them.
       if (name == "Apply") held_ = std::make_unique<TestClient>(folder_ / "control");
       auto wanted = json::parse(parameters.dump());
       if (name == "Apply") wanted["of_this_robot"] = true;

@@ -1,5 +1,5 @@
-// What people reported of other programs, made small: recordings of which the right answer is known from how
-// they were made. The files are not part of the repository; mistakes_test makes each kind anew.
+// Problems that people reported of other programs, made small: recordings of which the right answer is known
+// from how they were made. The files are not part of the repository; mistakes_test makes each kind anew.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

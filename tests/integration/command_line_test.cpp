@@ -415,7 +415,7 @@ TEST_F(CommandLine, S0_04_noise_of_the_wheels_tells_the_deviation_of_the_end) {
     EXPECT_EQ(ctl(call + wrong).status, 2) << wrong;
 }
 
-// What wheels did over an interval that was left out nobody knows: no trajectory goes over it without a word.
+// The wheels' motion over a left-out interval is unknown: no trajectory goes over it without a word.
 TEST_F(CommandLine, predict_and_convert_say_what_they_go_on_without) {
   std::string text = recording(0.0);
   text += R"({"type":"ticks","t":10.1,"left":90000,"right":90000})"
@@ -527,7 +527,7 @@ TEST_F(CommandLine, a_result_that_cannot_be_written_after_the_drive_is_printed_a
 
 class Completion : public CommandLine {
  protected:
-  /// What bash offers behind these words, the last of which is being typed.
+  /// Completions that bash offers behind these words, the last of which is being typed.
   std::string offered(const std::string& words) {
     write("complete.sh", R"(source "$1"; shift; COMP_WORDS=("$@"); COMP_CWORD=$(($# - 1))
 _odomcalibctl; printf '%s\n' "${COMPREPLY[@]}")");
@@ -546,8 +546,8 @@ TEST_F(Completion, knows_the_verbs_and_options_that_the_program_knows) {
 
 class OtherShells : public CommandLine, public ::testing::WithParamInterface<const char*> {
  protected:
-  /// What the shell offers behind these words, the last of which is being typed; zsh leaves out what does not
-  /// fit only afterwards.
+  /// Completions that the shell offers behind these words, the last of which is being typed; zsh leaves out
+  /// those that do not fit only afterwards.
   std::string offered(const std::string& words) {
     const std::string shell = GetParam();
     const fs::path program(ODOMCALIB_CTL);

@@ -1,4 +1,4 @@
-// What the service promises to whoever runs it: what it writes to the journal and to the state directory, and
+// Promises of the service to whoever runs it: what it writes to the journal and to the state directory, and
 // what it does where that is read-only or taken, the configuration is edited, or the clock is set.
 #include <fstream>
 

@@ -27,7 +27,7 @@ const sim::SimulatedRun& plain_run() {
   return run;
 }
 
-/// What both wheels did between two tick samples.
+/// Motion of both wheels between two tick samples.
 struct Interval {
   double t = 0.0, dt = 0.0;                  ///< s, of the end; duration
   double left = 0.0, right = 0.0;            ///< counts
@@ -188,7 +188,7 @@ TEST_P(Edited, is_told_and_keeps_the_wheels_right) {
     EXPECT_LT(std::abs(sigma), 4.0) << test_support::told(result);
 }
 
-/// Of fifty turns a second every fifth is sent.
+/// Every fifth of fifty turns a second is sent.
 TEST(Sweeps, are_not_assumed_of_a_head_that_turns_faster) {
   sim::SimulationConfig config = sim::standard_config(9);
   config.duration = 90.0;

@@ -10,7 +10,7 @@
 namespace odomcalib::endurance_test {
 namespace {
 
-/// What a process may leak.
+/// Resources that a process may leak.
 struct Held {
   std::size_t heap = 0;  // bytes in use
   std::ptrdiff_t descriptors = 0, threads = 0, files = 0;

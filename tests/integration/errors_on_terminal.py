@@ -57,7 +57,7 @@ def on_terminal(command, folder):
                 break
             seen += part
     os.close(ours)
-    # What the line of progress showed was taken back.
+    # The text of the progress line was taken back.
     lines = [line.rsplit("\r\x1b[K", 1)[-1] for line in seen.decode().replace("\r\n", "\n").split("\n")]
     return "\n".join(lines)
 

@@ -25,7 +25,7 @@ bool of_state(int fd) {
          std::string_view(path.data()).find("/state/") != std::string_view::npos;
 }
 
-/// What a file has already, a full disk does not refuse.
+/// A full disk refuses only bytes beyond the present end of a file.
 bool is_full_for(int fd, std::int64_t end) {
   struct stat file {};
   const bool full = disk_full && of_state(fd) && fstat(fd, &file) == 0 && end > file.st_size;

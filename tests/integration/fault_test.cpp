@@ -39,7 +39,7 @@ TEST_P(StoppingFault, ends_in_a_named_state_in_time_and_nothing_restarts) {
 INSTANTIATE_TEST_SUITE_P(Faults, StoppingFault, testing::ValuesIn(stopping_faults()),
                          [](const auto& one) { return std::string(one.param.name); });
 
-// What is wrong from the start shows in motion only: odometry and lidar must agree after 0.2 m or 30 degrees.
+// Faults present from the start show in motion only: odometry and lidar must agree after 0.2 m or 30 degrees.
 struct Deceit {
   const char* name;
   void (*begin)(SimRobot& robot);
@@ -113,7 +113,7 @@ const Deceit kDeceiving[] = {
 INSTANTIATE_TEST_SUITE_P(Faults, DeceivingFault, testing::ValuesIn(kDeceiving),
                          [](const auto& one) { return std::string(one.param.name); });
 
-// What must not stop a motion: it comes to its end, and the odometry is right.
+// Faults that must not stop a motion: it comes to its end, and the odometry is right.
 class BearableFault : public FaultLoop {
  protected:
   /// Metres between where the odometry and where the truth says that the robot is after 0.6 m out and back.

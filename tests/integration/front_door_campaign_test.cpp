@@ -19,7 +19,7 @@ namespace {
 using calib::ingest::Answer;
 using recording_faults::Form;
 
-/// Of a full campaign ODOMCALIB_CAMPAIGN; the suite takes a few.
+/// Runs of a full campaign: ODOMCALIB_CAMPAIGN; the suite takes a few.
 std::size_t runs(std::size_t few) {
   const char* text = std::getenv("ODOMCALIB_CAMPAIGN");
   return text == nullptr ? few : static_cast<std::size_t>(std::atoi(text));

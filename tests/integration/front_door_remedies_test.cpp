@@ -1,5 +1,5 @@
-// What a refusal tells to do about a unit is done to the letter, with the numbers that it prints: the
-// recording is then calibrated rightly.
+// Remedies that a refusal names for a unit are carried out to the letter, with the numbers that it prints:
+// the recording is then calibrated rightly.
 #include <gtest/gtest.h>
 
 #include <functional>

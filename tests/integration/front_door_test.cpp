@@ -33,7 +33,7 @@ const sim::SimulatedRun& drive() {
   return run;
 }
 
-/// What is said: a regular expression. Empty where putting it right is all.
+/// Words of the answer, a regular expression. Empty where putting the fault right is all.
 struct Words {
   std::string of_all;
   std::map<Form, std::string> of_form = {};

@@ -1,5 +1,5 @@
-// What must be true before the robot moves or values are written, each condition alone: nothing happens, and
-// the client is told why.
+// Conditions that must hold before the robot moves or values are written, each violated alone: nothing
+// happens, and the client is told why.
 #include "daemon/routines/plans.hpp"
 #include "daemon/service/motion_gate.hpp"
 #include "tests/integration/service_loop.hpp"
@@ -82,7 +82,7 @@ TEST(TooLong, is_a_plan_of_more_than_half_an_hour) {
   EXPECT_EQ(too_long(plan)->code, ErrorCode::usage);
 }
 
-/// What the configuration says, where the controller holds 0.150, 0.150 and 0.400 m: 15 % either way.
+/// A length in the configuration, where the controller holds 0.150, 0.150 and 0.400 m: 15 % either way.
 struct Nominal {
   const char* name;
   double RobotDescription::*length;
@@ -199,7 +199,7 @@ TEST_F(Gate, lets_values_pass_right_after_a_motion) {
   EXPECT_EQ(robot_->node().store_count(), 1U);
 }
 
-// What was allowed when it was asked for is asked again when the axes have come to rest.
+// A request that was allowed is checked again when the axes have come to rest.
 TEST_F(Gate, of_values_for_a_controller_that_fails_while_they_wait) {
   acquire();
   Mover mover(*this);

@@ -1,5 +1,5 @@
-// What may hold up a program that waits for others: a network whose queue is full, a directory of users that
-// does not answer, a device that says nothing. The loop waits for none of them: each of its turns is short.
+// Delays of a program that waits for others: a network whose queue is full, a directory of users that does
+// not answer, a device that says nothing. The loop waits for none of them: each of its turns is short.
 #include <fcntl.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -71,8 +71,8 @@ class HeldUp : public ::testing::Test {
     EXPECT_EQ(both_.run({"straight", "--yes", "--distance", "1"})->wait(30.0), 0) << both_.output();
   }
 
-  /// What somebody who may not use the socket is told, who has to be judged first. Root alone can be somebody
-  /// else.
+  /// Checks the answer to somebody who may not use the socket, and who has to be judged first. Root alone can
+  /// be somebody else.
   void expect_a_stranger_is_refused() {
     if (geteuid() != 0) return;
     std::filesystem::permissions(both_.folder(), std::filesystem::perms::all);

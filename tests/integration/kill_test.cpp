@@ -76,7 +76,7 @@ class KillAfterRecord : public ::testing::TestWithParam<Deaths> {
     const json robot = json::parse(both_.status(), nullptr, false)["robot"];
     return {robot["left_wheel_diameter"], robot["right_wheel_diameter"], robot["track_width"]};
   }
-  /// Of what the history says; the journal alone knew it when the daemon died.
+  /// Outcome of the newest entry of the history; the journal alone knew it when the daemon died.
   std::string newest_outcome() {
     auto asked = both_.run({"history", "--json"});
     EXPECT_EQ(asked->wait(10.0), 0) << both_.output();
@@ -113,7 +113,7 @@ TEST_P(KillAfterRecord, ends_with_wholly_old_or_wholly_new_values) {
   const Lengths& expected = GetParam().in_the_end == Values::fresh ? kNew : kOld;
   EXPECT_TRUE(same(values(), expected)) << both_.status();
   EXPECT_EQ(newest_outcome(), GetParam().in_the_end == Values::fresh ? "committed" : "rolled_back");
-  // What the drive wakes up with.
+  // The drive wakes up with the same values.
   both_.daemon.reset();
   both_.robot->tell("reset drive");
   restart();

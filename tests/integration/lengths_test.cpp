@@ -27,7 +27,7 @@ class Lengths : public ::testing::Test {
   }
   json truth() const { return json::parse(std::ifstream(both_.folder() / "truth.json")); }
   std::string file(const char* name) const { return both_.folder() / name; }
-  /// What the command prints; it must succeed. The axes are off by then, as they are when a person types.
+  /// Output of the command, which must succeed. The axes are off by then, as they are when a person types.
   std::string call(const std::vector<std::string>& arguments) {
     EXPECT_TRUE(wait_until([this] { return both_.ready(); }, 20.0)) << both_.status();
     const auto client = both_.run(arguments);

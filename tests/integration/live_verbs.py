@@ -42,7 +42,7 @@ TABLE = [
     ("stop", "", DONE, "stop"),
 ]
 FILES = [("lengths.json", "calibration")]
-# What the text of a verb leads to.
+# Next command that the text of a verb leads to.
 SAYS = {"history": "odomcalibctl compare"}
 
 

@@ -59,7 +59,7 @@ class OneRobot : public Manual, public testing::WithParamInterface<std::uint64_t
     options.truth = sim::draw_truth(options.nominal, GetParam());
   }
   double true_scale() const { return (truth().left_diameter + truth().right_diameter) / 0.3; }
-  /// What odometry says of a metre and of a turn, beside the true poses.
+  /// Compares a metre and a turn by odometry with the true poses.
   void expect_metre_and_turn() {
     const sim::Pose start = robot_->pose();
     cli::DrivenMoves metre;

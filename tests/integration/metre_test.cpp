@@ -44,7 +44,7 @@ struct Deviation {
   double error, std;
 };
 
-/// Of wheels and track, against the truth, relative, with the absolute deviations.
+/// Errors of wheels and track against the truth, relative, with the absolute deviations.
 std::vector<Deviation> deviations(const Calibration& found, const sim::Geometry& truth) {
   const auto scale = scale_of(found);
   EXPECT_TRUE(scale);

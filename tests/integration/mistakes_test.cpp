@@ -382,7 +382,7 @@ TEST(StraightMetre, with_yaw_negated_is_told_the_sign_and_not_to_record_again) {
   EXPECT_THAT(reasons(), ::testing::Not(HasSubstr("turns on the spot")));
 }
 
-// What was changed for the table, without a mistake.
+// The recordings that the table changes, without a mistake.
 TEST(MistakesNone, of_a_sound_recording_are_told) {
   for (const bool of_poses : {false, true}) {
     const Recording recording = of_poses ? with_poses() : plain_run().recording;

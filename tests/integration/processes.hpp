@@ -45,7 +45,7 @@ struct WheelSpeed {
   double clock = 0.0, simulated = 0.0, rim = 0.0;  ///< s, s, m/s
 };
 
-/// What the simulator wrote about its wheels so far.
+/// Log of the wheels that the simulator has written so far.
 class WheelLog {
  public:
   explicit WheelLog(std::filesystem::path path) : path_(std::move(path)) {}

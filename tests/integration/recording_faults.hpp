@@ -23,7 +23,7 @@ struct Draw {
 
 using Make = void (*)(Recording& recording, Form form, const Draw& draw);
 
-/// What puts the fault of that name into a recording that has the form: one for each row of
+/// Functions that put the fault of that name into a recording that has the form: one for each row of
 /// calib::ingest::faults().
 const std::map<std::string, Make>& makers();
 

@@ -1,4 +1,4 @@
-// What the program makes of the sample recording that it ships, as the README says to try it.
+// Result of the program on the sample recording that it ships, as the README says to try it.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <stdlib.h>

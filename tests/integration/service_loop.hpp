@@ -170,7 +170,7 @@ class ServiceLoop : public testing::Test {
     EXPECT_TRUE(got.has_value()) << "no reply";
     return got.value_or(control::Reply{});
   }
-  /// What is answered to somebody who asks this and nothing else.
+  /// Answer to somebody who asks this and nothing else.
   control::Reply ask(const std::string& method, const json& parameters, double seconds) {
     TestClient caller(folder_ / "control");
     caller.call(method, parameters);

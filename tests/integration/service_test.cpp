@@ -375,7 +375,7 @@ TEST_F(HalfBlind, what_the_lidar_does_not_see_is_told_before_anything_moves) {
 // Rule M10, whatever client it is: somebody stands for it, by name and for one motion.
 TEST_F(HalfBlind, nothing_goes_where_the_lidar_sees_nothing_unless_somebody_vouches_for_it) {
   acquire();
-  // What stands behind the robot does not move along, in this room.
+  // Objects behind the robot do not move along, in this room.
   const auto drive = [this](const json& vouched_by) {
     TestClient mover(folder_ / "control");
     mover.call("Straight", {{"lease", lease_}, {"distance", 0.3}, {"vouched_by", vouched_by}});

@@ -108,7 +108,7 @@ TEST_F(SolverOnItsOwn, does_not_outlive_the_process_that_started_it) {
   }
   pid_t solver = -1;
   ASSERT_EQ(read(ends[0], &solver, sizeof solver), static_cast<ssize_t>(sizeof solver));
-  // What stands still tells nothing either: else it would end when it finds nobody to tell its progress.
+  // A stopped solver sends nothing: otherwise it would end when nobody receives its progress.
   ASSERT_EQ(kill(solver, SIGSTOP), 0);
   kill(service, SIGKILL);
   waitpid(service, nullptr, 0);

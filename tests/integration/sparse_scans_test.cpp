@@ -32,7 +32,7 @@ std::ostream& operator<<(std::ostream& out, const Drive& drive) { return out << 
 
 constexpr double kWheel_m = 0.0762, kTrack_m = 0.248;  ///< nominal
 
-/// Of the simulated robots: what makes their odometry that of the simulator.
+/// Lengths of the simulated robots: they make their odometry that of the simulator.
 constexpr double kSimulatedWheel_m = 0.070, kSimulatedTrack_m = 0.235;
 
 /// Ratios to nominal, and delays, that an independent scan matching gave of the real ones.

@@ -1,4 +1,4 @@
-// What the answer to a call takes of the loop: no call, however large what it asks for, holds the loop up
+// Time of the loop that the answer to a call takes: no call, however much it asks for, holds the loop up
 // while the robot stands. Processor time of the loop's own thread, so that other load does not count.
 #include <ctime>
 
@@ -32,7 +32,7 @@ std::ostream& operator<<(std::ostream& out, const Asked& asked) { return out << 
 class TurnCost : public WholeLoop {
  protected:
   using WholeLoop::adjust;
-  // What is asked for fits, so that it is refused for no other reason, and the lidar sees walls all around.
+  // Every request fits, so that it is refused for no other reason, and the lidar sees walls all around.
   void adjust(sim::SimRobotOptions& options) override { options.room = sim::box_room(16.0, 16.0, 8.0, 8.0); }
   /// The longest turn until the answer is there, s of processor time.
   double longest_turn(TestClient& caller, double answered = kAnswered) {
@@ -87,7 +87,7 @@ TEST_P(WholeMotion, takes_less_than_20_ms_of_any_turn) {
   EXPECT_LT(longest, kLongestTurn);
 }
 
-// What a drive gave comes back whole, to be written into the controller.
+// The result of a drive comes back whole, to be written into the controller.
 TEST_F(TurnCost, of_a_write_back_of_a_whole_result_is_less_than_20_ms) {
   acquire();
   const json result = call("Calibrate", {{"options", {{"quick", true}}}});

@@ -21,7 +21,7 @@ from text_width import COLUMNS, too_wide
 
 DONE, FAILURE, USAGE, REFUSED, NO_DAEMON = 0, 1, 2, 3, 9
 ABSENT = "/nonexistent/file"
-# What a calibration comes to fits a screen; --verbose has the rest.
+# The summary of a calibration fits a screen; --verbose has the rest.
 SUMMARIES, SCREEN = {"solve", "report"}, 40
 
 # verb, arguments, exit status, schema of its JSON: one document, or lines where LINES has the schema.

@@ -1,5 +1,5 @@
-// What the daemon tells systemd: that it is ready before any device is there, and WATCHDOG=1 from the loop
-// itself. Its loop is stopped, its other threads are not: the message must stay away.
+// Messages of the daemon to systemd: that it is ready before any device is there, and WATCHDOG=1 from the
+// loop itself. Its loop is stopped, its other threads are not: the message must stay away.
 #include <gtest/gtest.h>
 #include <stdlib.h>
 #include <sys/ptrace.h>

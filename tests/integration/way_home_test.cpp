@@ -1,5 +1,5 @@
-// Which values may be written at all, where a rollback goes, and what is known afterwards of who wrote what:
-// the real driver on the simulated drive, in virtual time.
+// Values that may be written at all, the target of a rollback, and the knowledge afterwards of who wrote
+// what: the real driver on the simulated drive, in virtual time.
 #include <unistd.h>
 
 #include "daemon/writeback/history.hpp"
@@ -211,7 +211,7 @@ TEST_F(WayHome, a_replaced_controller_is_told_and_offered_what_was_verified_last
   EXPECT_EQ(call("Rollback", {{"to", "0001"}, {"replaced", true}}).error, "");
   EXPECT_NEAR(track(), 0.41, 1e-6);
   EXPECT_EQ(status()["replaced_controller"], "");
-  // What the other one holds is none of its ways home.
+  // The values that the other controller held are no way home.
   expect_refused(call("Rollback"), {"track_width = 0.48 m is more than 15 %"});
 }
 

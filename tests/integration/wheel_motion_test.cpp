@@ -16,9 +16,9 @@
 namespace odomcalib::wheel_motion_test {
 namespace {
 
-// Of the standard deviations: what the way of telling may move a value by. Angles on the encoder's grid give
-// the same counts. Speeds and odometry are counted on a finer grid, where other roundings end the iterations
-// elsewhere: twice the largest that was seen, 0.10 over four seeds.
+// Largest change of a value by the form of the wheel motion, in standard deviations. Angles on the encoder's
+// grid give the same counts. Speeds and odometry are counted on a finer grid, where other roundings end the
+// iterations elsewhere: twice the largest that was seen, 0.10 over four seeds.
 constexpr double kSameCounts = 1e-6, kSameWithin = 0.2;
 // Stated standard deviations; the largest of 27 lengths was 2.35.
 constexpr double kHonest = 3.5;

@@ -13,7 +13,7 @@ import unittest
 folder, work, source = (pathlib.Path(argument).resolve() for argument in sys.argv[1:4])
 RUNTIMES = {"linux-vdso.so.1", "ld-linux-x86-64.so.2", "ld-linux-aarch64.so.1", "libc.so.6", "libm.so.6", "libstdc++.so.6",
             "libgcc_s.so.1"}
-# What Ubuntu 22.04 has, the oldest of the four: glibc 2.35 and the C++ runtime of GCC 12.
+# Versions of Ubuntu 22.04, the oldest of the four: glibc 2.35 and the C++ runtime of GCC 12.
 NEWEST = {"GLIBC": (2, 35), "GLIBCXX": (3, 4, 30)}
 MOST_BYTES = 15_000_000
 

@@ -58,7 +58,7 @@ const pale = (least) => {
 """
 
 
-# What a reader sees without scrolling, and what must be among it.
+# Elements that a reader sees without scrolling, and those that must be among them.
 IN_SIGHT = """() => [...document.querySelectorAll("h1,header p,.lead,.sizes .v,.next p,.gain svg")].filter((e) => {
   const box = e.getBoundingClientRect();
   return box.width > 0 && box.top >= 0 && box.bottom <= innerHeight;

@@ -54,7 +54,7 @@ fs::path write_drive(const fs::path& folder) {
   return path;
 }
 
-/// What the peer made of write_drive() must be read as it is, by wheels and by odometry.
+/// The file that the peer made of write_drive() must be read as it is, by wheels and by odometry.
 void expect_peers_drive(const fs::path& path, bool closed = true) {
   const RobotDescription robot = test::ros_robot();
   const auto result = read_recording(path, &robot, {{"wheels", "/joint_states", {}}, {"pose", "/mocap", {}}});

@@ -144,7 +144,7 @@ int run(SimRobot& robot, const Arguments& arguments, const odomcalib::sim::Drawn
       if (!written) return std::fprintf(stderr, "odomcalib-sim: %s\n", written.error().text().c_str()), 1;
       truth_due = robot.now() + 1.0;
     }
-    // What happens in these 2 ms is sent at their end: bytes may come late, never before they were sent.
+    // Output of these 2 ms is sent at their end: bytes may come late, never before they were sent.
     std::this_thread::sleep_until(
         start + i * std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(kChunk)));
     if (commands) commands->serve(robot);

@@ -1,5 +1,5 @@
-// What the CAN tests stand on: interfaces made and removed, a peer on the bus that shares no code with
-// drivers/, and the far end of the kernel's own slcan driver.
+// Basis of the CAN tests: interfaces made and removed, a peer on the bus that shares no code with drivers/,
+// and the far end of the kernel's own slcan driver.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -79,7 +79,7 @@ class KernelSlcan {
   void down() const { ip("link set " + name_ + " down"); }
   /// The adapter says a line; CR is added.
   void say(const std::string& line) const;
-  /// What the driver wrote to the adapter since the last call.
+  /// Text that the driver wrote to the adapter since the last call.
   std::string heard();
   /// The adapter no longer reads what the driver writes (or reads again).
   void deaf(bool deaf) { deaf_ = deaf; }

@@ -1,4 +1,4 @@
-// What a basis sees of one interval.
+// The values of one interval that a basis sees.
 #pragma once
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// What changes all at once at one moment.
+// A change all at once at one moment.
 #pragma once
 
 #include "calib/terms/bases/argument.hpp"
@@ -10,7 +10,7 @@ namespace odomcalib::calib::terms {
 inline constexpr int kChangePoints = 14;
 
 /// 0 before the moment and 1 from then on, as when a load is taken up; on both wheels, one function for each.
-/// Of a sensor that was moved 1 before it and 0 from then on, for its x, y and yaw on the base: what is
+/// A sensor that was moved has 1 before it and 0 from then on, for its x, y and yaw on the base: what is
 /// stated of its place is where it is now.
 struct ChangePoint {
   double moment = 0.0;  ///< s after the recording's first sample

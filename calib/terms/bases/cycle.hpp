@@ -1,4 +1,4 @@
-// What comes back with a period.
+// Functions that come back with a period.
 #pragma once
 
 #include "calib/terms/bases/argument.hpp"

@@ -1,4 +1,4 @@
-// What fades away with time.
+// A function that fades away with time.
 #pragma once
 
 #include "calib/terms/bases/argument.hpp"

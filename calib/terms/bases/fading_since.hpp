@@ -1,4 +1,4 @@
-// What fades with the distance since an event.
+// Functions that fade with the distance since an event.
 #pragma once
 
 #include "calib/terms/bases/argument.hpp"
@@ -13,7 +13,7 @@ inline constexpr int kFadeKnots = 4;
 /// double.
 struct FadingSince {
   [[nodiscard]] BasisValues values(const Argument& at) const;
-  /// What is lost between one knot and the next is as much everywhere, the way between them half as long.
+  /// The loss between one knot and the next is as much everywhere, the way between them half as long.
   /// @param usual deviation that is expected of a coefficient
   [[nodiscard]] static double prior(std::size_t function, double usual);
   friend bool operator==(const FadingSince&, const FadingSince&) = default;

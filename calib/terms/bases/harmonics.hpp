@@ -6,7 +6,7 @@
 
 namespace odomcalib::calib::terms {
 
-/// Of an angle, together; higher ones are tried one by one.
+/// Harmonics of an angle, together; higher ones are tried one by one.
 inline constexpr int kHarmonics = 3;
 
 /// Cosines and sines of the first to the last multiple of an angle, by rotating on from one to the next.

@@ -1,4 +1,4 @@
-// What depends on the place and has edges.
+// Functions of the place that have edges.
 #pragma once
 
 #include "calib/terms/bases/argument.hpp"

@@ -1,4 +1,4 @@
-// What stays until the opposite happens.
+// Functions that stay until the opposite happens.
 #pragma once
 
 #include "calib/terms/bases/argument.hpp"

@@ -1,4 +1,4 @@
-// What depends on a speed, by few straight pieces.
+// Functions of a speed, by few straight pieces.
 #pragma once
 
 #include "calib/terms/bases/argument.hpp"
@@ -13,8 +13,8 @@ inline constexpr int kKnots = 4;
 /// @param relative share of the largest speed, -1 to 1
 double direction_of(double relative);
 
-/// What each direction adds to functions of the magnitude: a step with the direction, which on the unsigned
-/// way that has this direction is a constant, and the magnitude times the direction.
+/// The part that each direction adds to functions of the magnitude: a step with the direction, which on the
+/// unsigned way that has this direction is a constant, and the magnitude times the direction.
 void add_direction(const Argument& at, BasisValues& functions);
 
 /// Piecewise linear in the magnitude, zero at rest, and what the direction adds.

@@ -15,7 +15,7 @@ double cubic_bump(double x) {
   return (tail * tail * tail - (a < 1.0 ? 4.0 * core * core * core : 0.0)) / 6.0;
 }
 
-/// Of the splines about knots 1 to one past the last, four differ from zero.
+/// Four of the splines about knots 1 to one past the last differ from zero.
 BasisValues cubic_splines(int knots, double place) {
   BasisValues functions(static_cast<std::size_t>(knots) + 1);
   const int before = static_cast<int>(place) - 1;

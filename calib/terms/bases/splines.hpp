@@ -1,4 +1,4 @@
-// What depends on a speed or a force, by many smooth pieces.
+// Functions of a speed or a force, by many smooth pieces.
 #pragma once
 
 #include <vector>

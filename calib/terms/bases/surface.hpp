@@ -1,4 +1,4 @@
-// What depends on the place, smoothly.
+// Smooth functions of the place.
 #pragma once
 
 #include "calib/terms/bases/argument.hpp"

@@ -1,4 +1,4 @@
-// What a turn of either direction adds to the path.
+// Functions for what a turn of either direction adds to the path.
 #pragma once
 
 #include "calib/terms/bases/argument.hpp"

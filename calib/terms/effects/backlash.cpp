@@ -60,7 +60,7 @@ class Backlash final : public StepEffect<Backlash> {
     travel *= 1.0 - play * (share / std::abs(delta));
   }
 
-  /// What a play loses is known of kPlays; in between it is interpolated, from nothing on.
+  /// The loss to a play is known of kPlays; in between it is interpolated, from nothing on.
   template <typename T>
   static void lose(const vehicle::LostToPlay& lost, double delta, const T& play, T& travel) {
     if (std::abs(delta) < 1e-9) return;

@@ -4,7 +4,7 @@
 namespace odomcalib::calib::terms {
 namespace {
 
-// What a motion has wound up, such as the side walls of tyres in a turn on the spot, unwinds after it
+// Parts that a motion has wound up, such as the side walls of tyres in a turn on the spot, unwind after it
 // (negative sizes), and a robot on a slack gear rolls on (positive ones): a little motion after each stop
 // that no encoder counts.
 class StopSettling final : public StepEffect<StopSettling> {
@@ -42,7 +42,7 @@ class StopSettling final : public StepEffect<StopSettling> {
 
   template <typename T>
   static void act(const vehicle::StepContext& c, std::span<const T> p, vehicle::WheelStep<T>& step) {
-    const vehicle::Unwound& unwound = c.unwound[plain(p[2]) > 0.5 ? 1 : 0];
+    const vehicle::ReleasedWinding& unwound = c.unwound[plain(p[2]) > 0.5 ? 1 : 0];
     const double speed = plain(p[3]);
     const double growth = speed > 0.0 ? c.fastest / speed : 1.0;
     const T way = p[1] * (growth * unwound.way);

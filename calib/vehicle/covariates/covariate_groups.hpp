@@ -1,4 +1,4 @@
-// What of the drive so far is computed for a model: most covariates are looked at by one or two terms alone.
+// Groups of covariates of the drive so far, computed as a model needs them: most serve one or two terms.
 #pragma once
 
 #include <initializer_list>

@@ -1,4 +1,4 @@
-// What a gear train with play loses when its motor turns round.
+// Rotation that a gear train with play loses when its motor turns round.
 #pragma once
 
 #include <array>

@@ -1,4 +1,4 @@
-// Which way the robot moved lately.
+// Memory of the way the robot moved lately.
 #pragma once
 
 #include <array>
@@ -6,7 +6,7 @@
 
 namespace odomcalib::calib::vehicle {
 
-/// What happened lately, fading over several spans, the usual one second: nobody knows how long a robot
+/// Spans over which the memory of a motion fades, the usual one second: nobody knows how long a robot
 /// remembers.
 inline constexpr std::array<double, 8> kMemorySpans = {0.3, 1.0, 3.3, 0.2, 0.45, 0.67, 1.5, 2.2};
 inline constexpr std::size_t kUsualMemory = 1;

@@ -9,7 +9,7 @@
 namespace odomcalib::calib::vehicle {
 namespace {
 
-/// Of a time in which a quantity goes from one value to another.
+/// Share of the time during which a quantity that goes from one value to another is below one.
 double share_below_one(double from, double to) {
   if ((from < 1.0) == (to < 1.0)) return from < 1.0 ? 1.0 : 0.0;
   return (1.0 - std::min(from, to)) / std::abs(to - from);

@@ -1,4 +1,4 @@
-// What makes tyres slip sideways, as late as they follow it.
+// Causes of the tyres' sideways slip, as late as the tyres follow them.
 #pragma once
 
 #include <array>

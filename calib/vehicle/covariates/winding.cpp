@@ -22,8 +22,8 @@ void Winding::wind_up(const Rims& rims, const math::Pose& step) {
   follow(lasting.turn, std::copysign(1.0, step.yaw), std::abs(step.yaw) / settings::kWindTurn_rad);
 }
 
-std::array<Unwound, kWindings> Winding::unwind(double duration) {
-  std::array<Unwound, kWindings> unwound{};
+std::array<ReleasedWinding, kWindings> Winding::unwind(double duration) {
+  std::array<ReleasedWinding, kWindings> unwound{};
   const double share = -std::expm1(-duration / settings::kUnwind_s);
   for (std::size_t k = 0; k < kWindings; ++k) {
     unwound[k] = {share * wound_[k].way, share * wound_[k].turn};
@@ -33,8 +33,8 @@ std::array<Unwound, kWindings> Winding::unwind(double duration) {
   return unwound;
 }
 
-std::array<Unwound, kWindings> Winding::advance(const Standstill& standstill, const Rims& rims,
-                                                const math::Pose& step, double dt) {
+std::array<ReleasedWinding, kWindings> Winding::advance(const Standstill& standstill, const Rims& rims,
+                                                        const math::Pose& step, double dt) {
   const bool moves = standstill.stood() == 0.0;
   if (standstill.sets_off()) fastest_ = 0.0;
   if (moves) fastest_ = std::max(fastest_, rims.speed);

@@ -1,4 +1,4 @@
-// What tyres, belts and gears give back at rest of what a motion has wound up.
+// Winding that tyres, belts and gears release at rest after a motion has wound them up.
 #pragma once
 
 #include <array>
@@ -9,9 +9,9 @@
 
 namespace odomcalib::calib::vehicle {
 
-/// What unwinds after a stop of what a motion has wound up, as shares of the most it can: a straight motion
-/// winds up by its way, one on the spot by its turn, -1 to 1 in all.
-struct Unwound {
+/// Winding released after a stop, as shares of the most that a motion can wind up: a straight motion winds
+/// up by its way, one on the spot by its turn, -1 to 1 in all.
+struct ReleasedWinding {
   double way = 0.0;
   double turn = 0.0;
 };
@@ -27,16 +27,16 @@ class Winding {
   };
   /// @param step of the base; @param dt s
   /// @return what unwinds in the interval, by each way of winding up
-  std::array<Unwound, kWindings> advance(const Standstill& standstill, const Rims& rims,
-                                         const math::Pose& step, double dt);
+  std::array<ReleasedWinding, kWindings> advance(const Standstill& standstill, const Rims& rims,
+                                                 const math::Pose& step, double dt);
   /// Rim speed since the robot last stood, m/s.
   [[nodiscard]] double fastest() const { return fastest_; }
 
  private:
   void wind_up(const Rims& rims, const math::Pose& step);
-  std::array<Unwound, kWindings> unwind(double duration);
+  std::array<ReleasedWinding, kWindings> unwind(double duration);
 
-  std::array<Unwound, kWindings> wound_{};
+  std::array<ReleasedWinding, kWindings> wound_{};
   double fastest_ = 0.0;
 };
 

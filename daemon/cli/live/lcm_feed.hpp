@@ -1,4 +1,4 @@
-// What the daemon publishes on LCM, as it arrives.
+// Messages that the daemon publishes on LCM, as they arrive.
 #pragma once
 
 #include <functional>

@@ -180,7 +180,7 @@ void LiveState::take_status(const ordered_json& status) {
   }
   if (answers_without_message_ < settings::kPatience) ++answers_without_message_;
   if (!needs_scan()) return;
-  // What is known without LCM.
+  // Progress and odometry are known without LCM.
   progress_ = progress_of(object_in(status, "progress"));
   if (const auto pose = pose_of(status.value("odometry", ordered_json()))) take_odometry(*pose);
 }

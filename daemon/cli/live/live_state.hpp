@@ -1,4 +1,4 @@
-// What the page of `odomcalibctl view` shows, gathered from what the daemon answers and publishes.
+// Content of the page of `odomcalibctl view`, gathered from what the daemon answers and publishes.
 #pragma once
 
 #include <nlohmann/json.hpp>

@@ -40,7 +40,7 @@ std::string text_between(const std::string& text, const std::string& begin, cons
   return text.substr(from + begin.size(), to - from - begin.size());
 }
 
-/// What a Content-Security-Policy calls an inline text by.
+/// Hash by which a Content-Security-Policy names an inline text.
 std::string source_hash(const std::string& text) {
   std::array<unsigned char, EVP_MAX_MD_SIZE> digest{};
   unsigned size = 0;

@@ -38,7 +38,7 @@ constexpr std::array kMethods = {
     Method{"Rollback", When::when_idle, Lease::unless_dry_run, "write-back", rollback},
 };
 
-// Of the interface, but of no service of this version.
+// Method of the interface, but of no service of this version.
 constexpr Method kUnknown{"", When::when_idle};
 
 const Method& method_of(const std::string& name, const ordered_json& parameters) {

@@ -12,7 +12,7 @@
 
 namespace odomcalib {
 
-/// What a method works on.
+/// Objects that a method works on.
 struct Context {
   RobotParts& parts;
   Task* task = nullptr;  ///< that runs, or null
@@ -34,7 +34,7 @@ struct WrongParameter {
 };
 /// Replies follow by themselves.
 struct Subscribed {};
-/// What a call came to. A task answers its caller when it ends.
+/// Outcome of a call. A task answers its caller when it ends.
 using Outcome = std::variant<Answer, Error, WrongParameter, Subscribed, std::unique_ptr<Task>>;
 
 /// A call that is right in itself. It begins when its caller holds the lease that the method requires.

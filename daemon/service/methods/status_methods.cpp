@@ -1,4 +1,4 @@
-// What is there, what is in force, what was.
+// The robot's state, the values in force, and the history.
 #include <limits>
 
 #include "daemon/service/call_parameters.hpp"

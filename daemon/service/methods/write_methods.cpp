@@ -23,7 +23,7 @@ ParameterMap wanted_values(CallParameters& parameters) {
   return values;
 }
 
-// What is written is rounded to what the controller can hold.
+// Written values are rounded to what the controller can hold.
 struct Wish {
   ParameterMap values;
   std::string label = "apply";
@@ -51,7 +51,7 @@ ordered_json dry_run_report(const RobotParts& parts, const ParameterMap& present
   return report;
 }
 
-/// Of values that wait for their proof, and what was in force before them.
+/// Report on values that wait for their proof, and on what was in force before them.
 ordered_json discard_report(const RobotParts& parts) {
   const auto& last = parts.write_back.transaction.journal().last();
   Wish wish;
@@ -113,7 +113,7 @@ std::optional<Error> of_another_controller(const Calibration& calibration, const
       "calibrate again; where one of the same kind took its place: odomcalibctl apply --replaced"};
 }
 
-/// What nobody can tell without a name in the configuration.
+/// Without a name in the configuration nobody can know whether the calibration is this robot's.
 std::string whose_robot(const Calibration& calibration) {
   const std::string& theirs = calibration.robot.robot_id;
   return "robot.id is not configured, so that this robot cannot be told from others: the calibration is of " +
@@ -134,7 +134,7 @@ Result<Wish> wish_of(Calibration calibration, const RobotParts& parts, bool repl
   if (robot.empty()) wish.asks.push_back(whose_robot(calibration));
   for (const auto* name : {"left_wheel_diameter", "right_wheel_diameter", "track_width"})
     if (const auto value = calibration.parameter(name)) wish.values[name] = *value;
-  // What is in force is kept, journaled and read again and again.
+  // The calibration in force is kept, journaled and read again and again.
   calibration.extensions.erase(kPictureMember);
   wish.calibration = to_json(calibration);
   return wish;
@@ -182,7 +182,7 @@ Reading end_proof(Context& context, const Call& call, bool proven) {
   return Request{CallParameters(call.parameters).text("lease", ""), false,
                  [&parts = context.parts, caller = call.caller, proven]() -> Outcome {
                    const WriteBack& values = parts.write_back;
-                   // What has gone back by itself is discarded, too.
+                   // Values that have gone back by themselves are discarded, too.
                    if (proven ? !values.proving() : !values.busy() && !values.proving() && !values.ended)
                      return Error{ErrorCode::refused, "no values wait for their proof", "write-back",
                                   "odomcalibctl params get"};
@@ -199,7 +199,7 @@ Reading end_proof(Context& context, const Call& call, bool proven) {
 
 }  // namespace
 
-// What was written with "prove", and has been proven.
+// Stores values that were written with "prove", and have been proven.
 Reading store(Context& context, const Call& call) { return end_proof(context, call, true); }
 
 Reading discard(Context& context, const Call& call) { return end_proof(context, call, false); }

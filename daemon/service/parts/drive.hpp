@@ -19,7 +19,7 @@ std::string name_of(drivers::ControllerState state);
 
 class Drive {
  public:
-  /// What one turn brought.
+  /// News of one turn.
   struct News {
     std::vector<TickSample> ticks;
     std::vector<drivers::ControllerEvent> events;
@@ -47,12 +47,12 @@ class Drive {
   /// Why it is not known what the controller holds; nullopt also of one that holds nothing.
   [[nodiscard]] std::optional<Error> unread() const;
 
-  /// What the controller holds, as it was just read. @param written quantities that were written by us since
-  /// the last time. @return somebody else has changed one of the others
+  /// Takes the values that the controller holds, as they were just read. @param written quantities that were
+  /// written by us since the last time. @return somebody else has changed one of the others
   bool take(const std::vector<drivers::StoredParameter>& found, const ParameterMap& written);
   /// Nobody knows what it should hold.
   void forget_values();
-  /// What somebody else has changed and is not among the values that are about to be written.
+  /// Values that somebody else has changed and that are not among those about to be written.
   [[nodiscard]] std::optional<Error> changed_besides(const ParameterMap& values) const;
 
   BaseLink link;

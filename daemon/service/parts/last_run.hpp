@@ -1,5 +1,5 @@
-// What the daemon does and why it stopped the robot last, on the disk for the one that comes after it: after
-// a watchdog's restart, too, `status` says what happened.
+// Record of what the daemon does and why it stopped the robot last, on the disk for the one that comes after
+// it: after a watchdog's restart, too, `status` says what happened.
 #pragma once
 
 #include <filesystem>

@@ -1,4 +1,4 @@
-// What is new about the line to a device: found, lost, and why.
+// News about the line to a device: found, lost, and why.
 #pragma once
 
 #include <optional>
@@ -15,7 +15,7 @@ class LinkWatch {
     std::string text;
   };
 
-  /// What differs from the last call: once for each thing that happens, not for each attempt to open the line
+  /// Changes since the last call: once for each thing that happens, not for each attempt to open the line
   /// again.
   /// @param device as configured
   std::optional<News> look(const std::string& device, bool connected, const std::optional<Error>& problem);

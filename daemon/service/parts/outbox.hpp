@@ -1,4 +1,4 @@
-// What leaves the service: replies to clients, events and progress, telemetry and recordings.
+// Output of the service: replies to clients, events and progress, telemetry and recordings.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -30,7 +30,7 @@ class Outbox {
  public:
   /// @param time outlives this
   Outbox(ControlServer control_server, const Config& config, const Clock& time, EventLog log);
-  /// What is sent until the next turn carries this time.
+  /// Messages sent until the next turn carry this time.
   void begin_turn(double now) { now_ = now; }
 
   void reply(const Caller& caller, const std::string& frame);
@@ -47,7 +47,7 @@ class Outbox {
   /// Some times a second at most, however often it is called.
   void progress(const Caller& caller, const std::string& phase, double fraction, std::optional<double> eta);
 
-  /// Of what runs, as it was sent last: phase, fraction, eta; null when nothing was sent for a second.
+  /// Progress as it was sent last: phase, fraction, eta; null when nothing was sent for a second.
   [[nodiscard]] ordered_json last_progress() const;
 
   /// The robot's description goes into recordings: again in this turn, or at once.
@@ -57,7 +57,7 @@ class Outbox {
   [[nodiscard]] bool status_due() const { return now_ >= next_status_; }
   void send_status(const ordered_json& status);
   void send_result(const std::string& calibration);
-  /// Of the drive that was solved, for viewers: one message a path, all in one frame.
+  /// Sends the paths of the drive that was solved, for viewers: one message a path, all in one frame.
   void send_paths(const std::vector<PathTrace>& paths);
   void ticks(const TickSample& sample, const routines::Pose& odometry,
              const std::optional<PoseSample>& corrected);

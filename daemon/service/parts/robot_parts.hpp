@@ -19,7 +19,7 @@
 
 namespace odomcalib {
 
-/// What was opened when the daemon began.
+/// Parts that were opened when the daemon began.
 struct Opened {
   BaseLink base;
   LidarLink lidar;

@@ -1,4 +1,4 @@
-// What the lidar shows: its line, whether scans are fresh, what stands in the way and what it cannot see.
+// View of the lidar: its line, whether scans are fresh, what stands in the way and what it cannot see.
 #pragma once
 
 #include <cstdint>
@@ -22,7 +22,7 @@ class Surroundings {
 
   /// Whole turns that have come.
   std::vector<Scan> serve(const Clock& clock);
-  /// What is new about the line to the lidar, since the last call.
+  /// News about the line to the lidar, since the last call.
   std::optional<LinkWatch::News> take_news() {
     return watch_.look(link.device(), link.connected(), link.problem());
   }

@@ -28,7 +28,7 @@ std::optional<WriteReport> WriteBack::serve(drivers::Controller& controller, boo
   const auto state = controller.state();
   was_away_ = was_away_ || away(state);
   serve_proof(state, may_begin, now);
-  // What is there when it comes back, and what it holds, is to be seen, at once: nothing moves before.
+  // When the controller comes back, it and the values it holds are to be seen, at once: nothing moves before.
   if (was_away_ && !busy()) {
     was_away_ = values_known = recovery_tried_ = false;
     if (!ending_) next_read_ = now;
@@ -39,7 +39,7 @@ std::optional<WriteReport> WriteBack::serve(drivers::Controller& controller, boo
   return transaction.take_report();
 }
 
-// What RAM holds is as fleeting as the one who wanted it proven: what ends the one ends the other.
+// Values in RAM are as fleeting as the one who wanted them proven: what ends the one ends the other.
 void WriteBack::serve_proof(drivers::ControllerState state, bool may_begin, double now) {
   if (!transaction.proving()) {
     proof_ends_ = now + service::settings::kLongestProof_s;
@@ -98,7 +98,7 @@ Result<void> WriteBack::write(const std::string& label, const ParameterMap& valu
 
 void WriteBack::learn(const WriteReport& report) {
   const Ending& end = ending_of(report.outcome);
-  // What was driven was driven with the values in force then.
+  // Each drive was driven with the values in force at its time.
   if (end.proof != nullptr) (proof.*end.proof)();
   recovery_tried_ = recovery_tried_ || !end.certain;
   if (end.lasts && end.certain) {
@@ -145,7 +145,7 @@ Error of_another_controller(const HistoryEntry& entry, const std::string& ours, 
               " --replaced writes them to this one; or connect that controller"};
 }
 
-/// What was in force then was never lost in full: it needs no other proof.
+/// The values in force then were never lost in full: they need no other proof.
 Result<FormerValues> before_interrupted(const JournalRecord& record, const std::string& device,
                                         const std::optional<std::string>& in_force) {
   if (!record.device.empty() && !device.empty() && record.device != device)

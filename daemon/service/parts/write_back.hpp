@@ -23,7 +23,7 @@ struct WayWanted {
 
 inline constexpr const char* kBeforeProof = "the values before those that wait for their proof";
 
-/// What a rollback goes back to.
+/// Values that a rollback goes back to.
 struct FormerValues {
   ParameterMap values;
   std::optional<std::string> calibration;  ///< JSON text; nullopt: none was in force
@@ -65,7 +65,7 @@ class WriteBack {
   void take_back(const std::string& why);
   /// Values that this client was about to prove are not proven any more.
   void forget(ClientId gone);
-  /// What the end of a transaction says about what the controller holds.
+  /// Learns from the end of a transaction what the controller holds.
   void learn(const WriteReport& report);
   /// From now on nothing is read or recovered any more.
   void end();

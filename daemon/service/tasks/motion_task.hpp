@@ -29,7 +29,7 @@
 
 namespace odomcalib {
 
-/// What is made of a motion when it has come to its end.
+/// Purposes of a motion, served when it has come to its end.
 /// Each move by odometry and by the lidar.
 struct ReportMoves {
   std::size_t moves_in_round =

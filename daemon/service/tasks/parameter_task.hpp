@@ -1,4 +1,4 @@
-// What tasks that write to the controller have in common: a client's stop or end does not reach them.
+// Common part of tasks that write to the controller: a client's stop or end does not reach them.
 #pragma once
 
 #include <string>
@@ -14,7 +14,7 @@ namespace odomcalib {
 
 class ParameterTask : public Task {
  public:
-  /// What they work on; all of it outlives them.
+  /// Parts that the tasks work on; all of them outlive the tasks.
   struct Parts {
     WriteBack& write_back;
     const Drive& drive;

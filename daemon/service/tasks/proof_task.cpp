@@ -18,7 +18,7 @@ TaskTurn ProofTask::store(double now) {
 
 TaskTurn ProofTask::turn(double now) {
   if (!begun_ && proven_) return store(now);
-  // What is not proven goes back once the axes are off, whether somebody waits for it or not.
+  // Unproven values go back once the axes are off, whether somebody waits for it or not.
   if (!begun_) {
     parts_.write_back.take_back("whoever drove the proof takes the values back");
     parts_.write_back.place = kBeforeProof;

@@ -1,4 +1,4 @@
-// What the robot is used for: one task at a time. Motion, recording, solving and writing are the four kinds.
+// Uses of the robot: one task at a time. Motion, recording, solving and writing are the four kinds.
 #pragma once
 
 #include <memory>
@@ -15,7 +15,7 @@ namespace odomcalib {
 
 class Task;
 
-/// What a turn has made of a task.
+/// Results of a task's turn.
 struct Running {};
 struct Done {
   std::string reply;  ///< frame for the caller
@@ -44,7 +44,7 @@ class Task {
 
   /// Part of the loop as which the duration of its turns is counted (LoopWatch).
   [[nodiscard]] virtual const char* part() const = 0;
-  /// What `odomcalibctl status` shows.
+  /// Text that `odomcalibctl status` shows.
   [[nodiscard]] virtual std::string activity() const = 0;
   virtual TaskTurn turn(double now) = 0;
 
@@ -63,7 +63,7 @@ class Task {
   [[nodiscard]] virtual bool moves() const { return false; }
   /// Nothing else may be asked of the controller meanwhile.
   [[nodiscard]] virtual bool uses_controller() const { return moves(); }
-  /// Of the robot now.
+  /// Twist of the robot now.
   [[nodiscard]] virtual routines::Twist twist() const { return {}; }
 
   const Caller caller;

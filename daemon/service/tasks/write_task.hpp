@@ -47,8 +47,8 @@ class WriteTask final : public ParameterTask {
 
 ordered_json to_json(const RoundingError& error);
 
-/// What a write-back answers that has come to its end: done with the values that were asked for, or waiting
-/// for their proof.
+/// Answer of a write-back that has come to its end: done with the requested values, or waiting for their
+/// proof.
 ordered_json write_reply(const ParameterTask::Parts& parts, const WriteReport& report,
                          const ParameterMap& before, const ParameterMap& after,
                          const RoundingError& remaining);

@@ -79,7 +79,7 @@ void Arcos::on_bytes(std::span<const std::uint8_t> bytes, double now) {
 }
 
 void Arcos::on_packet(const arcos::Packet& packet, double now) {
-  // What it says was true when its first byte was sent: 10 bits a byte, framing included.
+  // Content of a packet was true when its first byte was sent: 10 bits a byte, framing included.
   const auto bytes = static_cast<double>(packet.bytes_after + packet.data.size() + kFraming);
   const double t = now - (baud_ ? 10.0 * bytes / *baud_ : 0.0);
   const Bytes data(packet.data);

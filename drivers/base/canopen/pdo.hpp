@@ -31,7 +31,7 @@ struct Pdo {
 /// back.
 void add_pdo_configuration(std::vector<SdoStep>& steps, const Pdo& pdo);
 
-/// What CiA 402 predefines for the first four PDOs of a single-axis drive; nullopt for other identifiers.
+/// CiA 402's predefined mapping of the first four PDOs of a single-axis drive; nullopt for other identifiers.
 std::optional<Pdo> predefined_pdo(std::uint32_t cob_id);
 
 /// Sum of the mapped bits in whole bytes.

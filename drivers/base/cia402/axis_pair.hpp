@@ -24,7 +24,7 @@ class AxisPair final : public Controller {
   std::vector<TickSample> take_ticks() override { return std::exchange(ticks_, {}); }
   std::vector<ControllerEvent> take_events() override { return std::exchange(events_, {}); }
 
-  /// That of the drive which is further from moving.
+  /// State of the drive that is further from moving.
   [[nodiscard]] ControllerState state() const override;
   void enable(double now) override;
   void disable(double now) override;

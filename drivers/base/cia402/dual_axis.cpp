@@ -72,7 +72,7 @@ void DualAxis::forget_node(double pause) {
   data_.forget();
 }
 
-/// What a store is worth is seen after a reset only. Everything in RAM is set up again afterwards.
+/// The effect of a store is seen after a reset only. Everything in RAM is set up again afterwards.
 void DualAxis::restart_to_verify() {
   event({now_, "restarted_to_verify", "the controller is reset to see what it stored", false});
   restarted_at_ = now_;
@@ -211,7 +211,7 @@ Result<void> DualAxis::job_allowed() const {
   return {};
 }
 
-/// What changes the geometry waits for rest. Reading does not: after a start, rest is known only when counts
+/// A change of the geometry waits for rest. Reading does not: after a start, rest is known only when counts
 /// have come for a while.
 Result<void> DualAxis::change_allowed(double now) {
   now_ = std::max(now_, now);

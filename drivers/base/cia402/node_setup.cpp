@@ -56,7 +56,7 @@ void add_safety_readings(std::vector<SdoStep>& steps) {
   steps.push_back(read_step(0x605E, 0, kI16, true, "605E"));
 }
 
-/// What else the node takes process data by, one after the other until it has no more.
+/// Readings of the node's other receive PDOs, one after the other until it has no more.
 void add_receive_pdo_readings(std::vector<SdoStep>& steps) {
   for (std::uint16_t number = 0; number < kMostReceivePdos; ++number) {
     SdoStep step = read_step(static_cast<std::uint16_t>(0x1400 + number), 1, kU32, true, "rpdo");

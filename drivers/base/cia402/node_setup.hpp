@@ -17,7 +17,7 @@ namespace odomcalib::drivers {
 class NodeSetup {
  public:
   enum class Phase { absent, identifying, configuring, starting, ready, foreign };
-  /// What a call of advance() came to.
+  /// Result of a call of advance().
   enum class Step {
     none,
     no_answer,   ///< nobody is there
@@ -25,7 +25,7 @@ class NodeSetup {
     configured,  ///< it has what the profile says, and is started
     running,     ///< it sends what it should: ready
   };
-  /// What was seen of the node besides its answers.
+  /// Observations of the node besides its answers.
   struct Seen {
     bool other_master = false;               ///< somebody else is at work
     std::uint8_t state = 0;                  ///< NMT, of its last life sign

@@ -83,7 +83,7 @@ bool NodeWatch::commands_node(const CanFrame& frame) const {
   return specifier == kDownloadSegment || specifier == kDownload || specifier == kBlockDownload;
 }
 
-/// What moves the wheels while somebody else commands them was not asked for here (M19).
+/// A motion of the wheels that somebody else commands was not requested here (M19).
 NodeWatch::Finding NodeWatch::on_other_master(const CanFrame& frame, const Situation& node, double now) {
   ++other_master_;
   const bool is_client = frame.id == 0x600u + profile_.node, is_nmt = frame.id == 0x000;

@@ -15,7 +15,7 @@ namespace odomcalib::drivers {
 /// Judges frames and the time that passes. It neither stops nor forgets anything: it says what it found.
 class NodeWatch {
  public:
-  /// What the rest of the driver is about with the node.
+  /// State of the rest of the driver towards the node.
   struct Situation {
     bool new_to_us = false;  ///< not configured yet: a boot-up message is no surprise
     bool ready = false;      ///< configured
@@ -49,7 +49,7 @@ class NodeWatch {
   void unheard() { heard_at_.reset(); }
   /// It is reset by us: that it boots is expected.
   void expect_boot() { fell_silent_ = false; }
-  /// What it holds was read from this time on: what others changed before is known.
+  /// Its objects were read from this time on: earlier changes by others are known.
   /// @param since s, begin of the reading
   void was_read(double since);
   /// It was set up anew: nothing is left of what others changed.

@@ -127,7 +127,7 @@ void ParameterJob::advance(canopen::SdoClient& sdo, double now) {
   end_stage();
 }
 
-/// What was read or written, whole or not at all.
+/// Takes the values that were read or written, whole or not at all.
 void ParameterJob::learn(Stage stage) {
   if (stage == Stage::store) return;
   for (const Wanted& wanted : wanted_) {
@@ -165,7 +165,7 @@ std::vector<StoredParameter> ParameterJob::read_values() const {
   return out;
 }
 
-/// Of the steps that read what else the node was given. One without an answer tells nothing.
+/// Notes a change from the steps that read the node's other settings. One without an answer shows nothing.
 void ParameterJob::note_change() {
   const canopen::SdoOutcome& last = sequence_.outcomes().back();
   if (!last.step.tag.empty() || last.error->code == ErrorCode::timeout) return;

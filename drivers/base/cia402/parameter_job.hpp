@@ -41,7 +41,7 @@ class ParameterJob {
   /// The node was lost: the job ends with an error that says what is known.
   void abandon();
   std::optional<ParameterJobResult> take_result();
-  /// What is not as it was set up, once.
+  /// A setting that is not as it was set up, once.
   std::optional<Error> take_change() { return std::exchange(change_, std::nullopt); }
 
  private:

@@ -28,7 +28,7 @@ void MotionCycle::enable(double now) {
   if (const std::string refusal = device_.enable_refusal(); !refusal.empty())
     return event("enable_refused", refusal, false, now);
   if (active()) return;
-  // What the device shows of its axes may be older than the stop: they would seem to follow already.
+  // The device's view of its axes may be older than the stop: they would seem to follow already.
   if (motion_ != Motion::off) {
     again_ = true;
     return;

@@ -14,7 +14,7 @@
 
 namespace odomcalib::drivers {
 
-/// What the motion needs of a device. Speeds are wheel angular velocities in rad/s, forward positive.
+/// Device functions that the motion needs. Speeds are wheel angular velocities in rad/s, forward positive.
 class MotionDevice {
  public:
   MotionDevice() = default;
@@ -22,19 +22,19 @@ class MotionDevice {
   MotionDevice& operator=(const MotionDevice&) = delete;
   virtual ~MotionDevice() = default;
 
-  // What it sees of its axes.
+  // The state of its axes, as it sees them.
   /// Why they must not get torque now; empty: nothing is in the way.
   [[nodiscard]] virtual std::string enable_refusal() const = 0;
   /// Both have torque and follow commands, as far as the device says.
   [[nodiscard]] virtual bool follows() const = 0;
-  /// What to say when they do not within the time that is allowed.
+  /// Error text when they do not follow within the time that is allowed.
   [[nodiscard]] virtual std::string enable_failure() const = 0;
   /// One has torque for sure. False of a device that does not say.
   [[nodiscard]] virtual bool shows_torque() const { return false; }
   /// None has torque, nor brakes electrically, for sure. False of a device that does not say.
   [[nodiscard]] virtual bool shows_no_torque() const { return false; }
 
-  // What it sends.
+  // Commands that it sends.
   /// A new attempt to get torque begins.
   virtual void begin_enabling() {}
   /// One step towards torque; repeated every cycle until the axes follow.
@@ -69,7 +69,7 @@ class MotionCycle {
   [[nodiscard]] bool active() const { return motion_ == Motion::on || enabling(); }
   [[nodiscard]] bool at_rest(double now) const { return now - moved_at_ >= options_.rest_s; }
 
-  // What Controller asks for; `now` never goes back.
+  // Functions for Controller; `now` never goes back.
   /// While a motion ends: as soon as the axes are off.
   void enable(double now);
   void disable(double now);

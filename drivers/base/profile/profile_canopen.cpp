@@ -168,7 +168,7 @@ bool mapped(const Profile& profile, const canopen::ObjectAddress& object, bool t
   return false;
 }
 
-/// What the controller cannot work without must be somewhere in the process data.
+/// Objects that the controller cannot work without must be somewhere in the process data.
 void check_mapping(ProfileTable& table, const Profile& profile) {
   const bool two = profile.axes == 2;
   for (const auto& object :

@@ -19,7 +19,7 @@ std::size_t index(Side side) { return static_cast<std::size_t>(side); }
 constexpr std::array kCommands = {"motion_command", "control_mode", "set_state", "controller_mode",
                                   "input_speed",    "set_current",  "set_rpm"};
 
-/// What the tables call the voltage that the device runs on.
+/// Names in the tables of the voltage that the device runs on.
 constexpr std::array kVoltages = {"battery_V", "voltage_V", "input_voltage_V"};
 
 std::optional<double> voltage_in(const DeviceMessage& message) {
@@ -202,7 +202,7 @@ Result<void> SpeedBase::start_read_parameters(double now) {
   return {};
 }
 
-/// What else it holds is not compared: counts do not depend on it.
+/// Other settings it holds are not compared: counts do not depend on them.
 std::optional<Error> SpeedBase::timeout_changed() const {
   const auto before = reading_->before, now = protocol_->reported_timeout_s();
   if (!before || !now || *before == *now) return std::nullopt;

@@ -23,7 +23,7 @@ struct SideCount {
   std::int64_t raw = 0;  ///< as the device counts: unsigned, wrapping, mirrored
 };
 
-/// What a device says of itself; what it does not say stays empty.
+/// State that a device reports; the rest stays empty.
 struct DeviceState {
   std::optional<bool> enabled;  ///< follows speed commands
   std::string fault;            ///< empty: none

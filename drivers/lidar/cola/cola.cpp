@@ -43,7 +43,7 @@ void Cola::on_bytes(std::span<const std::uint8_t> bytes, double now) {
 void Cola::on_telegram(const cola::Telegram& telegram, double arrival) {
   if (!telegram.scan) return report_telegram(telegram);
   if (is_repeated(*telegram.scan)) return finder_.frames().reject("repeated_scans");
-  // Of a sensor with several layers only the horizontal one can be matched in the plane.
+  // Only the horizontal layer of a sensor with several can be matched in the plane.
   if (layers_.size() < cola::kMostLayers) layers_.insert(telegram.scan->layer);
   if (telegram.scan->layer != 0) return finder_.frames().reject("other_layers");
   on_scan(*telegram.scan, arrival);

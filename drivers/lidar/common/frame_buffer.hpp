@@ -13,7 +13,7 @@
 
 namespace odomcalib::drivers {
 
-/// What a parser makes of the bytes at the front.
+/// Verdict of a parser on the bytes at the front.
 struct Verdict {
   enum class Kind { wait, skip, good };
   Kind kind = Kind::wait;
@@ -55,7 +55,7 @@ class FrameBuffer {
   /// Counts a rejection of something that is not a frame, such as a turn that is too short.
   void reject(const char* why, std::uint64_t times = 1) { count_of(why) += times; }
 
-  /// What is buffered will never be completed.
+  /// Skips the buffered bytes: they will never be completed.
   void reset() {
     skipped_ += buffer_.size();
     buffer_.clear();

@@ -19,9 +19,9 @@ inline constexpr std::size_t kMostBeams = 100'000;
 inline constexpr std::size_t kTurns = 100;
 /// Turns that may be missing between two stamps. Chosen: beyond, the count of turns is a guess.
 inline constexpr std::int64_t kMostLost = 20;
-/// Of a period, from a whole number of turns. Derived: half a period would be the next number.
+/// Deviation from whole turns, in periods per turn. Derived: half a period would be the next number.
 inline constexpr double kMostMisfit = 0.4;
-/// Of the nominal period. Chosen: cheap motors are off by several per cent.
+/// Relative deviation from the nominal period. Chosen: cheap motors are off by several per cent.
 inline constexpr double kMostDeviation = 0.2;
 /// Stamps from which on the measured period counts. Chosen: before, a stamp of 1 ms is worse than the data
 /// sheet.

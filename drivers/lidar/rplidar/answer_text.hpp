@@ -8,7 +8,7 @@
 
 namespace odomcalib::drivers::rplidar {
 
-/// What is not known is shown as hexadecimal digits.
+/// Unknown content is shown as hexadecimal digits.
 LidarMessage describe_answer(std::uint8_t type, Bytes payload);
 
 /// Time per point, s, when the answer tells it for the mode in use (key 71h).

@@ -1,4 +1,4 @@
-// What kind of measurement packets a recording holds that began after the descriptor, and so does not say.
+// Guess of the measurement packets' type in a recording that began after the descriptor and so lacks it.
 #pragma once
 
 #include <optional>

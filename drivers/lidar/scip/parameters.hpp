@@ -1,4 +1,4 @@
-// What a SCIP sensor tells about its geometry (command PP).
+// Geometry of a SCIP sensor as the sensor reports it (command PP).
 #pragma once
 
 #include <map>
@@ -22,7 +22,7 @@ std::map<std::string, std::string> fields_of(const std::vector<std::string>& lin
 /// Absent when a field is missing, or the values contradict each other.
 std::optional<Parameters> read_parameters(const std::vector<std::string>& lines);
 
-/// Of sensors whose recordings may lack them: "utm30lx" (also UST-10LX, UST-20LX), "urg04lx".
+/// Parameters of sensors whose recordings may lack them: "utm30lx" (also UST-10LX, UST-20LX), "urg04lx".
 std::optional<Parameters> known_parameters(const std::string& model);
 
 }  // namespace odomcalib::drivers::scip

@@ -90,7 +90,7 @@ std::optional<Layout> layout_of(const std::string& echo) {
   return std::nullopt;
 }
 
-/// Of several echoes the first one is kept.
+/// The first of several echoes is kept.
 bool read_values(std::string_view text, const Layout& layout, Measurement& out) {
   Values values(text);
   while (!values.at_end() && values.ok()) {

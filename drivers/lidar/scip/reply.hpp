@@ -11,7 +11,7 @@
 
 namespace odomcalib::drivers::scip {
 
-/// What an M or G command brings.
+/// Measurement that an M or G command returns.
 struct Measurement {
   unsigned first_step = 0, last_step = 0, cluster = 1;
   std::uint32_t stamp_ms = 0;  ///< 24 bits, of the start of the revolution at the rear

@@ -12,7 +12,7 @@
 
 namespace odomcalib::drivers::ydlidar {
 
-/// What a stream does not tell about itself.
+/// Properties of a model that its stream does not state.
 struct Model {
   const char* name = "";
   unsigned baud = 0;

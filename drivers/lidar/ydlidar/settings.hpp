@@ -25,7 +25,7 @@ inline constexpr double kRangeMin_m = 0.05, kRangeMax_m = 64.0;
 /// Wrong checksums without one right packet that are another model. Chosen: a fraction of a second; a noisy
 /// line has right ones among them.
 inline constexpr std::uint64_t kAllWrong = 50;
-/// Of these, right ones with samples of the other size. Derived: chance gives one in 65536.
+/// Packets among these that are right with samples of the other size. Derived: chance gives one in 65536.
 inline constexpr std::uint64_t kOtherKind = 2;
 
 }  // namespace odomcalib::drivers::ydlidar

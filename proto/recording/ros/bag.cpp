@@ -114,7 +114,7 @@ class BagReader {
     read_records(unpacked.bytes);
   }
 
-  /// What a chunk holds: connections and messages.
+  /// Reads the content of a chunk: connections and messages.
   void read_records(std::string_view bytes) {
     ByteReader reader(bytes);
     while (!reader.at_end()) {

@@ -235,7 +235,7 @@ class Choosing {
     return "the file does not say what " + out + (names.size() > 1 ? " are" : " is") + " (no schema)";
   }
 
-  /// What to type, as far as the names of the topics tell; else with a word for the name.
+  /// Options to type, as far as they follow from the names of the topics; else with a word for the name.
   static std::string lines_for(const std::vector<std::string>& names) {
     std::string lines;
     std::array<bool, kParts.size()> used{};
@@ -247,7 +247,7 @@ class Choosing {
     return lines.empty() ? "--topic wheels=TOPIC --topic scan=TOPIC" : lines;
   }
 
-  /// What could be a part that is missing, or finer than the one that was taken.
+  /// Reports topics that could be a part that is missing, or finer than the one that was taken.
   void tell_typeless() {
     const bool has_reference = chosen_[Part::scan] != nullptr || chosen_[Part::pose] != nullptr;
     const bool has_wheels = chosen_[Part::wheels] != nullptr || chosen_[Part::wheel_speeds] != nullptr;

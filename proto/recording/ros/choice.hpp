@@ -1,4 +1,4 @@
-// Which topic is what. Internal to proto/.
+// Assignment of topics to the parts of a recording. Internal to proto/.
 #pragma once
 
 #include <array>
@@ -25,10 +25,10 @@ struct Chosen {
 /// Every topic that is taken, once.
 std::vector<Topic*> taken_topics(const Chosen& chosen);
 
-/// What the chosen topics have to be, by name: for those whose type the file does not say.
+/// Kinds that the chosen topics must have, by name: for those whose type the file does not say.
 std::map<std::string, Kind> kinds_of(const TopicChoices& choices);
 
-/// What the user chose, and of the rest what is unique. Error: usage, or empty (no wheel motion).
+/// Topics that the user chose, and the unique ones of the rest. Error: usage, or empty (no wheel motion).
 /// @param remarks what else there was, and how to take it
 Result<Chosen> choose_topics(Collector& collector, const TopicChoices& choices, const std::string& where,
                              std::vector<std::string>& remarks);

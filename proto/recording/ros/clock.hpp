@@ -14,7 +14,7 @@ class Clock {
  public:
   explicit Clock(const Chosen& chosen);
 
-  /// What to say of the times; empty for sound stamps.
+  /// Remark on the times; empty for sound stamps.
   [[nodiscard]] const std::string& remark() const { return remark_; }
   /// s since the zero of that clock, at which times begin: a whole second
   [[nodiscard]] double start() const;

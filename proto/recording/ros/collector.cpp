@@ -98,7 +98,7 @@ bool add_pose(Topic& topic, std::int64_t received, std::string_view bytes) {
   return true;
 }
 
-/// Of a frame that is placed again the last place counts.
+/// The last place of a frame counts where it is placed again.
 bool add_transforms(Topic& topic, std::string_view bytes) {
   auto transforms = decode_transforms(bytes, topic.encoding);
   if (!transforms) return false;

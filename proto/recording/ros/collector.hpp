@@ -1,4 +1,4 @@
-// What containers hold, by topic: every message that can be decoded, and a count of every other. Internal to
+// Content of containers, by topic: every message that can be decoded, and a count of every other. Internal to
 // proto/.
 #pragma once
 
@@ -24,7 +24,7 @@ struct Stamped {
   std::size_t frames = 0;  ///< which of the topic's frames; not of joints
 };
 
-/// What a message is given in: frame_id of its header, and child_frame_id of odometry.
+/// Frames of a message: frame_id of its header, and child_frame_id of odometry.
 struct Frames {
   std::string frame, child;
 };
@@ -51,7 +51,7 @@ struct Topic {
   std::size_t malformed = 0;   ///< that did not hold what the type says
   std::vector<Frames> frames;  ///< all that messages had, the first one first
 
-  // Of its kind.
+  // Decoded content, by the topic's kind.
   std::vector<Stamped<Scan>> scans;
   std::vector<std::vector<std::string>> joint_names;  ///< every list that a message had
   std::vector<Stamped<JointValues>> joints;
@@ -71,7 +71,7 @@ class Collector {
   std::size_t topic(const TopicHeader& header);
   static constexpr std::size_t kTooMany = SIZE_MAX;
 
-  /// What unpacks the recording's pieces: they have one limit together.
+  /// Unpacker of the recording's pieces: they have one limit together.
   Unpacker& unpacker() { return unpacker_; }
 
   void message(std::size_t topic, std::int64_t received_ns, std::string_view bytes);

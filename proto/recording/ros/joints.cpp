@@ -103,7 +103,7 @@ double step(double from, double to) {
   return std::abs(to - from) > std::numbers::pi ? std::remainder(to - from, kTurn) : to - from;
 }
 
-/// Of one joint between two messages, in rad; by its speed where there are no angles.
+/// Way of one joint between two messages, in rad; by its speed where there are no angles.
 double way(const Stamped<JointValues>& from, const Stamped<JointValues>& to, std::size_t joint) {
   if (!from.value.positions.empty() && !to.value.positions.empty())
     return step(from.value.positions[joint], to.value.positions[joint]);

@@ -1,4 +1,4 @@
-// Which joints of a topic are the wheels. Internal to proto/.
+// The wheels among the joints of a topic. Internal to proto/.
 #pragma once
 
 #include <array>

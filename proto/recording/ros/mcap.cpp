@@ -83,7 +83,7 @@ class McapReader {
     read_records(unpacked.bytes, unpacked.whole ? crc : 0);
   }
 
-  /// What a chunk holds: schemas, channels, messages.
+  /// Reads the content of a chunk: schemas, channels, messages.
   /// @param crc 0: not known
   void read_records(std::string_view bytes, std::uint32_t crc) {
     if (crc != 0 && crc != crc_of(bytes)) return collector_.discard("chunk", "wrong checksum");

@@ -13,7 +13,7 @@ namespace {
 constexpr std::size_t kMostJoints = 4096;
 constexpr std::size_t kMostTransforms = 4096;
 constexpr std::int64_t kSecond = 1'000'000'000;
-// Of a quaternion's norm from 1: some publishers write single precision, or a few decimals; zero is none.
+// Error of a quaternion's norm of 1: some publishers write single precision, or a few decimals; zero is none.
 constexpr double kQuaternionTolerance = 0.1;
 
 struct Row {
@@ -66,7 +66,7 @@ class MessageReader {
     if (encoding_ == Encoding::cdr) out = out.substr(0, out.find('\0'));
     return std::string(out);
   }
-  /// Of a sequence whose elements are read one by one.
+  /// Length of a sequence whose elements are read one by one.
   std::size_t count(std::size_t most) {
     const std::size_t count = number<std::uint32_t>();
     if (count > most) reader_.fail();

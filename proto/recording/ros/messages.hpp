@@ -18,7 +18,7 @@ namespace odomcalib::ros {
 
 enum class Encoding : std::uint8_t { ros1, cdr };
 
-/// What can be decoded.
+/// Kinds of messages that can be decoded.
 enum class Kind : std::uint8_t { none, scan, joints, imu, odometry, pose, transforms, description };
 
 /// Where things sit on the robot, no samples.

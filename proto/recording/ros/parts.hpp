@@ -1,4 +1,4 @@
-// What a topic can be taken as, and how topics are described. Internal to proto/.
+// Parts that a topic can be taken as, and descriptions of topics. Internal to proto/.
 #pragma once
 
 #include <array>
@@ -22,7 +22,7 @@ std::string name_of(Part part);
 bool serves(const Topic& topic, Part part);
 /// The kind that a topic of an unknown type is read as when it is chosen as the part.
 Kind kind_for(Part part);
-/// What the name of a topic suggests.
+/// The part that the name of a topic suggests.
 std::optional<Part> part_by_name(const std::string& topic);
 /// The types that can be the part, for people.
 std::string types_for(Part part);
@@ -31,7 +31,7 @@ std::string types_for(Part part);
 std::string joined(const std::vector<std::string>& words);
 /// Name, type and count.
 std::string described(const Topic& topic);
-/// Of a robot with hundreds of topics the first ones, those that can be read before all others.
+/// List of topics, of hundreds only the first ones; those that can be read come before all others.
 std::string list_of(const std::vector<Topic>& topics);
 
 }  // namespace odomcalib::ros

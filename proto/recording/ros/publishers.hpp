@@ -1,4 +1,4 @@
-// Which of several publishers of one topic is taken. Internal to proto/.
+// Choice between several publishers of one topic. Internal to proto/.
 #pragma once
 
 #include <optional>

@@ -140,7 +140,7 @@ void add_mounting(RecordingBuilder& builder, const std::vector<Topic>& topics, c
   auto found = mounting_of(published, frames_of_base(topics), lidar);
   if (!found && is_described) {
     by = published.empty() ? "/robot_description" : "/robot_description and /tf_static";
-    // Of a frame that both place the published place counts, which is the later one.
+    // Where both place a frame, the published place counts, which is the later one.
     all.insert(all.end(), published.begin(), published.end());
     found = mounting_of(all, frames_of_base(topics), lidar);
   }
@@ -157,13 +157,13 @@ void add_mounting(RecordingBuilder& builder, const std::vector<Topic>& topics, c
                  ", unless --robot states one");
 }
 
-/// Of a topic that cannot be read.
+/// Description of a topic that cannot be read.
 std::string unread(const Topic& topic) {
   if (topic.header.type.empty()) return topic.header.name + ": the file does not say what it is (no schema)";
   return topic.header.type + " is not read" + (topic.problem.empty() ? "" : ": " + topic.problem);
 }
 
-/// What was there and is not used.
+/// Reports everything that was there and is not used.
 void tell_rest(RecordingBuilder& builder, const Collector& collector, const Chosen& chosen) {
   const auto taken = taken_topics(chosen);
   for (const Topic& topic : collector.topics()) {

@@ -1,4 +1,4 @@
-// Which topic is what, and from there into a recording. Internal to proto/.
+// Choice of the topics, and the way from there into a recording. Internal to proto/.
 #pragma once
 
 #include <optional>

@@ -17,7 +17,7 @@ constexpr const char* kDamaged = "compressed data is damaged";
 constexpr const char* kCutOff = "compressed data is cut off";
 constexpr const char* kTooLarge = "unpacks to more than it states, or than the limit";
 
-/// What one turn of a decompressor did.
+/// Result of one turn of a decompressor.
 struct Turn {
   std::size_t taken = 0;  ///< bytes of the input
   std::size_t made = 0;   ///< bytes of the output

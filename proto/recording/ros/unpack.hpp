@@ -13,8 +13,8 @@ namespace odomcalib::ros {
 
 enum class Packing : std::uint8_t { none, bz2, lz4, zstd };
 
-/// Of one chunk or message. rosbag closes a chunk at 768 KiB and MCAP's writers at 1 to 4 MiB, in both cases
-/// after the message that goes beyond: this leaves room for the largest images and point clouds.
+/// Size of one chunk or message. rosbag closes a chunk at 768 KiB and MCAP's writers at 1 to 4 MiB, in both
+/// cases after the message that goes beyond: this leaves room for the largest images and point clouds.
 inline constexpr std::size_t kLargestChunk = std::size_t{256} << 20;
 
 /// Unpacks one stream (bz2; LZ4 frames; zstd frames), at most `limit` bytes. Memory grows with what really

@@ -25,7 +25,7 @@ std::optional<std::array<double, 3>> three_numbers(const char* text) {
   return out;
 }
 
-/// Of turns about the fixed axes x, y, z, one after the other: rad.
+/// Quaternion of turns about the fixed axes x, y, z, one after the other: rad.
 std::array<double, 4> quaternion_of(const std::array<double, 3>& rpy) {
   const double cr = std::cos(0.5 * rpy[0]), sr = std::sin(0.5 * rpy[0]);
   const double cp = std::cos(0.5 * rpy[1]), sp = std::sin(0.5 * rpy[1]);

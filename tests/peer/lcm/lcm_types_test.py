@@ -22,7 +22,7 @@ import odomcalib  # noqa: E402  (the generated package)
 
 STAMP = {"utime": 1_700_000_000_123_456, "mono_ns": 987_654_321_012}
 
-# What lcm_messages_main.cpp writes, said again.
+# The messages that lcm_messages_main.cpp writes, stated again.
 OURS = {
     "robot_t": {"utime": STAMP["utime"], "robot_id": "robot-1", "controller": "sim", "left_wheel_diameter": 0.147,
                 "right_wheel_diameter": 0.146, "track_width": 0.411, "ticks_per_rev": 16384.0, "has_lidar_pose": 1,

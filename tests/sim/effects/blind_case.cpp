@@ -115,8 +115,8 @@ double any_of(Random& random, std::initializer_list<double> values) {
   return *(values.begin() + random() % values.size());
 }
 
-/// What is sold: small and large bases, coarse and fine encoders read seldom or often, lidars of 5 to 40
-/// turns a second with few or many beams, near- and far-sighted, good and poor.
+/// Machines on the market: small and large bases, coarse and fine encoders read seldom or often, lidars of 5
+/// to 40 turns a second with few or many beams, near- and far-sighted, good and poor.
 void draw_machine(Random& random, SimulationConfig& config) {
   const double diameter = uniform(random, 0.06, 0.30);
   Geometry& nominal = config.nominal;
@@ -140,7 +140,7 @@ void draw_machine(Random& random, SimulationConfig& config) {
   config.body.slip_noise = uniform(random, 0.0001, 0.001);
 }
 
-/// What a tape would find: a wheel's diameter is the distance of a turn over pi.
+/// Lengths that a tape would find: a wheel's diameter is the distance of a turn over pi.
 Geometry effective(const SimulationConfig& config) {
   Geometry truth = config.truth;
   for (const auto& disturbance : config.disturbances) {

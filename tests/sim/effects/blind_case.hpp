@@ -18,7 +18,7 @@ struct BlindEffect {
   std::string unit;
 };
 
-/// What the estimators do not see.
+/// The answer, which the estimators do not see.
 struct BlindAnswer {
   std::uint64_t campaign = 0;
   unsigned number = 0;

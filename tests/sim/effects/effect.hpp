@@ -13,7 +13,7 @@
 
 namespace odomcalib::sim {
 
-/// What is known about a kind of effect.
+/// Known properties of a kind of effect.
 struct EffectKind {
   std::string name;
   std::string catalogue_name;           ///< nearest name in the estimators' catalogue; empty: there is none

@@ -1,4 +1,4 @@
-// What the place does to the robot.
+// Effects of the place on the robot.
 #include <algorithm>
 #include <cmath>
 

@@ -9,7 +9,7 @@ namespace odomcalib::sim {
 
 namespace {
 
-/// What a law may depend on, about one where the robot does its utmost.
+/// A variable that a law may depend on, about one where the robot does its utmost.
 struct Cause {
   const char* name;
   std::vector<std::string> depends_on;
@@ -48,7 +48,7 @@ const std::array<Cause, 6>& causes() {
 
 enum class Shape { straight, square, step, magnitude, hump };
 
-/// What it moves by: relative, m for each m, or (yaw) a third of a rad for each m.
+/// The quantity that a law changes: relative, m for each m, or (yaw) a third of a rad for each m.
 enum class Result { one_wheel, both_wheels, track, one_wheel_ahead, both_ahead, aside, aside_always, yaw };
 
 class FreeLaw : public Effect {

@@ -1,7 +1,7 @@
 // A CANopen dual-axis drive (CiA 301, CiA 402) in the manner of the ZLAC8015D, with wheel geometry in its
 // memory.
 //
-// What differs from the real ZLAC8015D: heartbeat and event timers count in milliseconds; it watches the
+// Differences from the real ZLAC8015D: heartbeat and event timers count in milliseconds; it watches the
 // master's heartbeat (1016h) and leaves operational when it is lost (1029h); targets (60FFh) are in 0.01 rpm;
 // the right side is not mirrored; objects 2100:01..03 hold left and right wheel diameter and track width in
 // micrometres. The diameters are storage only: wheel speeds do not depend on them. Ramp times (6083h to
@@ -32,14 +32,14 @@ enum class NmtState : std::uint8_t {
   pre_operational = 0x7F
 };
 
-/// What the node sees of the wheels.
+/// State of the wheels that the node sees.
 struct WheelState {
   std::array<std::int64_t, 2> counts{};
   std::array<double, 2> rate{};  ///< rad/s
   double lateness = 0.0;         ///< s that what is read now takes longer to the bus
 };
 
-/// What the node wants from the motors.
+/// Motion that the node wants from the motors.
 struct MotorOrder {
   bool torque = false;
   std::array<double, 2> rate{};  ///< rad/s

@@ -15,7 +15,7 @@ enum class DriveState {
   fault,
 };
 
-/// What the power stage does with the motors.
+/// Action of the power stage on the motors.
 enum class MotorAction {
   free,        ///< no torque
   follow,      ///< target velocity with the profile ramps

@@ -28,7 +28,7 @@ class FrameLine {
     put(frame, now);
     if (happens(faults_.doubled)) put(frame, now);
   }
-  /// What has come to its other end by now.
+  /// Frames that have come to the other end by now.
   std::vector<Frame> take(double now) {
     std::vector<Frame> out;
     const auto first_waiting = std::stable_partition(waiting_.begin(), waiting_.end(),

@@ -22,7 +22,7 @@ class Pty {
   [[nodiscard]] const std::string& path() const { return path_; }
   /// True while some program has the port open.
   [[nodiscard]] bool in_use() const;
-  /// What the program sent; never blocks.
+  /// Reads the bytes that the program sent; never blocks.
   std::string read();
   /// Sends without blocking. Bytes that nobody listens to, or that do not fit, are lost, as on a real line.
   void write(std::span<const std::uint8_t> bytes);

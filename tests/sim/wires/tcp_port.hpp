@@ -20,7 +20,7 @@ class TcpPort {
   [[nodiscard]] std::uint16_t port() const { return port_; }
   /// Takes a waiting client; a newer one replaces an older. True when a new one came.
   bool accept();
-  /// What the client sent; never blocks.
+  /// Reads the bytes that the client sent; never blocks.
   std::string read();
   void write(const std::string& bytes);
   void drop_client();

@@ -1,4 +1,4 @@
-// What the simulated robot really is, for people and scripts that check a calibration against it.
+// True values of the simulated robot, for people and scripts that check a calibration against them.
 #pragma once
 
 #include <filesystem>

@@ -15,7 +15,7 @@ namespace odomcalib::sim {
 inline constexpr std::size_t kLeft = 0, kRight = 1;
 using PerSide = std::array<double, 2>;
 
-/// What an effect may look at: the state at the beginning of a fine time step, and how the motors move in it.
+/// Data for an effect: the state at the beginning of a fine time step, and how the motors move in it.
 struct StepView {
   double t = 0.0;          ///< s, true time
   double dt = 0.0;         ///< s
@@ -73,7 +73,7 @@ class Disturbance {
   /// Distance that a wheel rolls in a whole turn, over that of the round wheel: what its diameter means then.
   [[nodiscard]] virtual double roundness(std::size_t /*side*/) const { return 1.0; }
   virtual void on_step(const StepView& /*view*/, StepMotion& /*motion*/) {}
-  /// What the encoder sees (rad per side); starts as the shaft angle at the end of the step.
+  /// Angle that the encoder sees (rad per side); starts as the shaft angle at the end of the step.
   virtual void on_encoder(const StepView& /*view*/, PerSide& /*encoder_angle*/) {}
   /// On the wires a later stamp becomes a later arrival; an earlier one cannot be had there.
   virtual void on_ticks(TickReading& /*reading*/) {}

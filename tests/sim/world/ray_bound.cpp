@@ -41,7 +41,7 @@ class Path {
   }
   [[nodiscard]] double end() const { return samples_.back().t; }
   [[nodiscard]] const TruthSample& sample(std::size_t k) const { return samples_[k]; }
-  /// Of the sample interval that holds t.
+  /// Index of the sample interval that holds t.
   [[nodiscard]] std::size_t index(double t) const {
     const double period = samples_[1].t - samples_[0].t;
     return std::min(static_cast<std::size_t>(std::max(0.0, t / period)), samples_.size() - 2);

@@ -11,7 +11,7 @@ namespace odomcalib::sim {
 
 namespace {
 
-/// What a host believes that integrates nominal parameters, for closed-loop drives.
+/// Pose that a host believes by integrating nominal parameters, for closed-loop drives.
 class BelievedPose {
  public:
   explicit BelievedPose(const Geometry& nominal) : nominal_(nominal) {}
@@ -35,7 +35,7 @@ class BelievedPose {
   Pose pose_;
 };
 
-/// What the recording holds, and when it really was.
+/// Sample of the recording, and when it really was.
 template <typename Sample>
 struct Timed {
   Sample sample;

@@ -1,4 +1,4 @@
-// What a scan match is off by, and how that compares with what it says.
+// Error of a scan match, and how it compares with the covariance of the match.
 #pragma once
 
 #include <Eigen/LU>

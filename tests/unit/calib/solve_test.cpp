@@ -53,7 +53,7 @@ TEST(Solve, SD_11_a_recording_without_scans_is_refused_with_the_cause) {
   EXPECT_EQ(result.data.front().counts.front(), (std::pair<std::string, std::size_t>{"ticks", 2}));
 }
 
-// Of readers that count from a second of the file, and of those that do not.
+// Recordings of readers that count from a second of the file, and of those that do not.
 TEST(Solve, says_when_the_robot_was_driven_where_the_clock_tells_the_date) {
   Recording recording;
   recording.robot = {0.15, 0.15, 0.4, 4096.0, std::nullopt, "", ""};
@@ -191,7 +191,7 @@ std::vector<Recording> optiodom(const std::string& kind, std::size_t every = 1) 
   return recordings;
 }
 
-/// Of the published least-squares fit of end poses on straight-spin only.
+/// End errors of the published least-squares fit of end poses on straight-spin only.
 constexpr EndError kPublishedSquare{9.3e-3, 1.08 * M_PI / 180.0};
 constexpr EndError kPublishedCircle{17.4e-3, 3.80 * M_PI / 180.0};
 
@@ -218,8 +218,7 @@ TEST(Solve, optiodom_fitted_on_straight_and_spin_holds_on_squares_and_circles) {
   }
 }
 
-// What the plain model lacks shows where the robot turns as it drives. Half of the recordings, for their
-// time.
+// Defects of the plain model show where the robot turns as it drives. Half of the recordings, for their time.
 TEST(Solve, optiodom_fitted_on_circles_too_does_better_on_squares) {
   ODOMCALIB_NEEDS_SHARED("optiodom");
   if (!test_support::long_tests()) GTEST_SKIP() << "takes minutes: ./test.sh --long";

@@ -1,4 +1,4 @@
-// What `decode` writes, line by line.
+// Output of `decode`, line by line.
 #pragma once
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-// What the driver tests share: seeds, byte strings, the accounting law.
+// Common parts of the driver tests: seeds, byte strings, the accounting law.
 #pragma once
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-// What others wrote, as a terminal gets it.
+// Text that others wrote, as a terminal gets it.
 #include "proto/visible_text.hpp"
 
 #include <gtest/gtest.h>

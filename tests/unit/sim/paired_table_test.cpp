@@ -1,4 +1,4 @@
-// What is counted when two versions of the program are compared on the same recordings.
+// Counts of a comparison of two versions of the program on the same recordings.
 #include "tests/blind/paired_table.hpp"
 
 #include <gmock/gmock.h>

@@ -16,7 +16,7 @@
 
 namespace odomcalib {
 
-/// What is wrong: a status of odometry.h and the reason in words.
+/// An error: a status of odometry.h and the reason in words.
 struct Problem {
   int status = ODOMCALIB_OK;
   std::string text;

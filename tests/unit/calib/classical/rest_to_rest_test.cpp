@@ -28,7 +28,7 @@ SpinMove spin_move(double turns) {
   return {{-wheel, wheel}, sensor_motion_by_hand(kTruth, -wheel, wheel).yaw};
 }
 
-/// What a robot with these lengths does that believes in the nominal ones.
+/// Square run of a robot with these lengths that believes in the nominal ones.
 SquareRun square_run(const wheels::BaseParameters& truth, double side, double direction) {
   const double straight = side / kNominal.left_radius;
   const double turn = direction * math::kPi / 4.0 * kNominal.track_width / kNominal.left_radius;
@@ -65,7 +65,7 @@ TEST(GeometryErrors, S1_01_factors_and_lengths_say_the_same) {
   }
 }
 
-/// What wheels that are commanded a metre, or a turn, do on a robot with these errors.
+/// Motion of a robot with these errors whose wheels are commanded a metre, or a turn.
 math::Pose commanded_metre(const wheels::BaseParameters& nominal, const GeometryErrors& errors) {
   const double turn = 1.0 / nominal.left_radius;
   return sensor_motion_by_hand(with_errors(nominal, errors), turn, turn);

@@ -123,20 +123,20 @@ TEST(EvenStamps, spread_what_arrives_in_bursts) {
   EXPECT_LT(spread(even->t, truth), 0.1 * spread(given, truth));
 }
 
-TEST(StampContest, goes_to_the_stamps_whose_errors_are_noise) {
+TEST(StampComparison, goes_to_the_stamps_whose_errors_are_noise) {
   std::mt19937 engine(selection::kSeed);
   std::normal_distribution<double> noise;
-  StampContest for_even, for_given, undecided;
+  StampComparison for_even, for_given, undecided;
   for (int k = 0; k < 400; ++k) {
     const double own = noise(engine), difference = 0.7 * noise(engine);
     for_even.add(own + difference, own);
     for_given.add(own, own - difference);
     undecided.add(own + 0.5 * difference, own - 0.5 * difference);
   }
-  EXPECT_TRUE(for_even.is_for_even()) << "seed " << selection::kSeed;
-  EXPECT_FALSE(for_given.is_for_even());
-  EXPECT_FALSE(undecided.is_for_even());
-  EXPECT_FALSE(StampContest().is_for_even());
+  EXPECT_TRUE(for_even.even_is_better()) << "seed " << selection::kSeed;
+  EXPECT_FALSE(for_given.even_is_better());
+  EXPECT_FALSE(undecided.even_is_better());
+  EXPECT_FALSE(StampComparison().even_is_better());
 }
 
 /// Counts of wheels that speed up and slow down, taken at the given times.

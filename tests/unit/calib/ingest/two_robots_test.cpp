@@ -1,4 +1,4 @@
-// What recordings state of their robot, when several are given.
+// Statements of several recordings about their robot.
 #include "calib/ingest/two_robots.hpp"
 
 #include <gtest/gtest.h>

@@ -79,7 +79,7 @@ Eigen::Matrix3d covariance_of(double diameter, double track) {
   return covariance;
 }
 
-/// Of 300 drives, those that end within the ellipse.
+/// Number of 300 drives that end within the ellipse.
 int count_inside(const Eigen::Matrix3d& covariance, double slip, unsigned seed) {
   const Calibration calibration = calibration_with(covariance, slip);
   const Eigen::Matrix3d root = covariance.llt().matrixL();
@@ -120,8 +120,8 @@ TEST(LibraryCovariance, of_both_holds_the_ends_of_95_of_100_drives) {
   EXPECT_LE(inside, 294);
 }
 
-// What neither was put in: the calibrations of simulated recordings, noise and all. Each robot then drives
-// on.
+// Neither of the two was put in here: the calibrations of simulated recordings, noise and all. Each robot
+// then drives on.
 TEST(LibraryCovariance, of_solved_recordings_holds_the_ends_of_95_of_100_drives) {
   if (!test_support::long_tests()) GTEST_SKIP() << "takes minutes: ./test.sh --long";
   int inside = 0;

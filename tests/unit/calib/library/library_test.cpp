@@ -104,8 +104,8 @@ void expect_same(const std::array<double, 3>& pose, const PoseSample& expected, 
   ASSERT_EQ(pose[2], expected.yaw) << where;
 }
 
-/// That the library's poses of a recording are those of the program, to the last bit: sample by sample those
-/// of the running daemon, at once those of predict.
+/// Expects the library's poses of a recording to be those of the program, to the last bit: sample by sample
+/// those of the running daemon, at once those of predict.
 void expect_equal(const Recording& recording, const Calibration& calibration, const std::string& what) {
   Calibration of_recording = calibration;
   of_recording.robot.ticks_per_rev = recording.robot.ticks_per_rev;

@@ -141,7 +141,7 @@ TEST(Matching, both_ways_a_bent_wall_ahead_moves_nobody) {
   EXPECT_NEAR(both_ways, 0.0, 2e-4);
 }
 
-// Of a wall at the end of the reach only the readings come back that noise has shortened: it seems to come
+// Only the readings that noise has shortened come back from a wall at the end of the reach: it seems to come
 // nearer more slowly than the robot goes.
 TEST(Matching, a_wall_at_the_end_of_the_reach_holds_nobody_back) {
   constexpr double kNoise = 0.03, kReach = 5.0;

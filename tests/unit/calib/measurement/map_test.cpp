@@ -131,7 +131,7 @@ TEST(PlaceScan, finds_the_place_and_states_its_own_error) {
   EXPECT_LT(sum, 8.0);
 }
 
-// Of a wall just within reach only the readings come back that noise has shortened.
+// Only the readings that noise has shortened come back from a wall just within reach.
 TEST(PlaceScan, walls_where_noise_decides_whether_they_are_seen_say_nothing) {
   const WallMap map = map_of_room();
   const math::Pose pose{0.0, 0.0, 0.0};

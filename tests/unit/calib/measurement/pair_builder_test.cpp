@@ -1,4 +1,4 @@
-// Which pairs of scans, poses and tuples count as measured motions.
+// Pairs of scans, poses and tuples that count as measured motions.
 #include "calib/measurement/pair_builder.hpp"
 
 #include <gtest/gtest.h>

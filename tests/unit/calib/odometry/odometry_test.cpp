@@ -61,7 +61,7 @@ Calibration with_wheels_larger_by(double share) {
   return calibration;
 }
 
-/// That wheels without a law, larger by `share`, lead to the same end (`drive` takes 60 s).
+/// Expects wheels without a law, larger by `share`, to lead to the same end (`drive` takes 60 s).
 void expect_as_larger(const Calibration& calibration, double share, const std::string& what) {
   const Recording recording = drive();
   const Calibration larger = with_wheels_larger_by(share);
@@ -142,7 +142,7 @@ TEST(Odometry, what_a_lidar_did_in_time_is_not_followed) {
   }
 }
 
-// What a plain model looks at is the same whether what comes after is known or not.
+// A plain model looks at the same values whether those that come after are known or not.
 TEST(Odometry, without_effects_each_pose_is_that_of_predict_to_the_last_bit) {
   const Recording recording = drive();
   const Calibration calibration = with_wheels_larger_by(0.013);

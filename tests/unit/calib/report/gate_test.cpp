@@ -28,7 +28,7 @@ Calibration with_track(double value, double deviation) {
   return calibration;
 }
 
-const Footing kFirm{true, 400, 20, {}};
+const VerdictEvidence kFirm{true, 400, 20, {}};
 
 TEST(Gate, accepts_what_is_sound_and_leaves_the_lidar_pose_alone) {
   const GateResult gate = judge(sound(), kFirm);
@@ -46,9 +46,9 @@ TEST(Gate, refuses_a_badly_determined_length_and_names_the_motion_for_it) {
 }
 
 TEST(Gate, asks_for_the_motion_that_is_missing_not_for_what_was_driven) {
-  Footing footing = kFirm;
-  footing.missing_motion = "straight lines, forward and backward";
-  const GateResult gate = judge(with_track(0.4, 0.0121), footing);
+  VerdictEvidence evidence = kFirm;
+  evidence.missing_motion = "straight lines, forward and backward";
+  const GateResult gate = judge(with_track(0.4, 0.0121), evidence);
   ASSERT_EQ(gate.reasons.size(), 1U);
   EXPECT_NE(gate.reasons[0].find("record straight lines"), std::string::npos) << gate.reasons[0];
   EXPECT_EQ(gate.reasons[0].find("turns on the spot"), std::string::npos) << gate.reasons[0];
@@ -65,23 +65,23 @@ TEST(Gate, of_a_length_that_is_not_determined_the_value_says_nothing) {
 
 TEST(Gate, accepts_what_only_a_law_of_unknown_shape_makes_uncertain_and_says_so) {
   const Calibration uncertain = with_track(0.4, 0.0121);
-  Footing footing = kFirm;
-  footing.measured = {{"track_width", {0.4, 1e-4, "m"}}};
-  const GateResult gate = judge(uncertain, footing);
+  VerdictEvidence evidence = kFirm;
+  evidence.measured = {{"track_width", {0.4, 1e-4, "m"}}};
+  const GateResult gate = judge(uncertain, evidence);
   EXPECT_EQ(gate.verdict, Verdict::accepted_with_warnings);
   ASSERT_EQ(gate.reasons.size(), 1U);
   EXPECT_NE(gate.reasons.front().find("track_width without what was found"), std::string::npos)
       << gate.reasons.front();
-  footing.measured.front().second.std = 0.0121;
-  EXPECT_EQ(judge(uncertain, footing).verdict, Verdict::refused);
+  evidence.measured.front().second.std = 0.0121;
+  EXPECT_EQ(judge(uncertain, evidence).verdict, Verdict::refused);
 }
 
 TEST(Gate, warns_of_a_way_that_adds_up_to_more_than_noise) {
-  Footing footing = kFirm;
+  VerdictEvidence evidence = kFirm;
   const auto drifting = [&](double value, double low) {
-    footing.drive_errors = {
+    evidence.drive_errors = {
         {"open_loop_10s_position", "m", 20, {}, {}, Bounded{value, low, 2.0 * value}, 0.004}};
-    return judge(sound(), footing);
+    return judge(sound(), evidence);
   };
   EXPECT_EQ(drifting(0.0079, 0.006).verdict, Verdict::accepted);
   EXPECT_EQ(drifting(0.0096, 0.0039).verdict, Verdict::accepted) << "a few stretches may have made that";
@@ -97,9 +97,9 @@ DriveError figure(const char* name, double before, double after) {
 }
 
 GateResult driven(std::vector<DriveError> errors) {
-  Footing footing = kFirm;
-  footing.drive_errors = std::move(errors);
-  return judge(with_track(0.4, 0.0021), footing);
+  VerdictEvidence evidence = kFirm;
+  evidence.drive_errors = std::move(errors);
+  return judge(with_track(0.4, 0.0021), evidence);
 }
 
 TEST(Gate, refuses_where_nothing_that_was_off_is_better) {
@@ -126,30 +126,30 @@ TEST(Gate, says_of_a_recording_that_determines_nothing_that_it_is_too_short) {
   Calibration nothing = sound();
   for (auto& [name, quantity] : nothing.parameters)
     if (!name.starts_with("lidar_")) quantity.std = 0.2 * quantity.value;
-  Footing footing = kFirm;
-  footing.pairs = 19;
-  const GateResult gate = judge(nothing, footing);
+  VerdictEvidence evidence = kFirm;
+  evidence.pairs = 19;
+  const GateResult gate = judge(nothing, evidence);
   ASSERT_EQ(gate.reasons.size(), 1U);
   EXPECT_EQ(gate.reasons.front().find("too short: 19 measured motions"), 0U) << gate.reasons.front();
-  footing.pairs = 20;
-  EXPECT_EQ(judge(nothing, footing).reasons.size(), 3U) << "long enough to say of each what is missing";
+  evidence.pairs = 20;
+  EXPECT_EQ(judge(nothing, evidence).reasons.size(), 3U) << "long enough to say of each what is missing";
 }
 
-/// What to do follows from the weightiest reason, never from all of them.
+/// The next step follows from the weightiest reason, never from all of them.
 TEST(Gate, says_what_to_do_next_by_the_weightiest_reason) {
   EXPECT_EQ(judge(sound(), kFirm).next_step, "");
   Calibration half = with_track(0.81, 1e-4);  // which is measured from the middle
   EXPECT_EQ(judge(half, kFirm).next_step,
             "correct robot.toml, or the recording, as the first reason says, and solve again");
-  Footing footing = kFirm;
-  footing.remarks = {"stamps jitter"};
-  EXPECT_EQ(judge(sound(), footing).next_step, "read what the reasons say of the recording");
-  EXPECT_NE(judge(with_track(0.45, 1e-4), footing).next_step.find("measure it with a tape"),
+  VerdictEvidence evidence = kFirm;
+  evidence.remarks = {"stamps jitter"};
+  EXPECT_EQ(judge(sound(), evidence).next_step, "read what the reasons say of the recording");
+  EXPECT_NE(judge(with_track(0.45, 1e-4), evidence).next_step.find("measure it with a tape"),
             std::string::npos)
       << "lengths weigh more than remarks";
   Calibration open = with_track(0.4, 0.1);
-  footing.missing_motion = "turns on the spot, both ways";
-  EXPECT_EQ(judge(open, footing).next_step, "record turns on the spot, both ways, and solve again");
+  evidence.missing_motion = "turns on the spot, both ways";
+  EXPECT_EQ(judge(open, evidence).next_step, "record turns on the spot, both ways, and solve again");
   EXPECT_EQ(next_after({ErrorCode::format, "yaw looks like degrees", "a.jsonl", "multiply yaw by pi / 180"}),
             "multiply yaw by pi / 180; then solve again");
 }
@@ -195,24 +195,25 @@ TEST(Gate, refuses_values_of_the_few_scans_that_happened_to_match) {
   EXPECT_EQ(gate.verdict, Verdict::refused);
   ASSERT_EQ(gate.reasons.size(), 1U);
   EXPECT_NE(gate.reasons[0].find("9 of 100"), std::string::npos) << gate.reasons[0];
-  EXPECT_EQ(judge(sound(), Footing{}).verdict, Verdict::accepted) << "places in a map, poses or tuples";
+  EXPECT_EQ(judge(sound(), VerdictEvidence{}).verdict, Verdict::accepted)
+      << "places in a map, poses or tuples";
 }
 
 TEST(Gate, asks_for_more_matches_where_most_leave_a_direction_open) {
-  Footing footing{true, 45, 55, {}};
-  EXPECT_EQ(judge(sound(), footing).verdict, Verdict::accepted_with_warnings);
-  footing.partial = 30;
-  EXPECT_EQ(judge(sound(), footing).verdict, Verdict::refused);
-  footing = {true, 55, 45, {}};
-  footing.partial = 40;
-  EXPECT_EQ(judge(sound(), footing).verdict, Verdict::accepted);
+  VerdictEvidence evidence{true, 45, 55, {}};
+  EXPECT_EQ(judge(sound(), evidence).verdict, Verdict::accepted_with_warnings);
+  evidence.partial = 30;
+  EXPECT_EQ(judge(sound(), evidence).verdict, Verdict::refused);
+  evidence = {true, 55, 45, {}};
+  evidence.partial = 40;
+  EXPECT_EQ(judge(sound(), evidence).verdict, Verdict::accepted);
 }
 
 TEST(Gate, asks_for_walls_where_lengths_are_open_because_matches_are) {
-  Footing footing{true, 60, 10, {}};
-  footing.partial = 58;
-  footing.missing_motion = "turns on the spot, both ways";
-  const GateResult gate = judge(with_track(0.4, 0.0121), footing);
+  VerdictEvidence evidence{true, 60, 10, {}};
+  evidence.partial = 58;
+  evidence.missing_motion = "turns on the spot, both ways";
+  const GateResult gate = judge(with_track(0.4, 0.0121), evidence);
   ASSERT_EQ(gate.reasons.size(), 1U);
   EXPECT_NE(gate.reasons[0].find("58 of 60 pairs of scans leave one direction open"), std::string::npos);
   EXPECT_EQ(gate.reasons[0].find("turns on the spot"), std::string::npos) << gate.reasons[0];
@@ -220,30 +221,30 @@ TEST(Gate, asks_for_walls_where_lengths_are_open_because_matches_are) {
 
 TEST(Gate, names_no_cause_by_few_motions_and_says_how_few_readings_there_were) {
   for (const double track : {1.6, -0.4}) {
-    Footing footing{true, 19, 0, {}};
-    footing.pairs = 19;
-    footing.readings = 17;
-    footing.beams = 361;
-    const GateResult few = judge(with_track(track, 1e-4), footing);
+    VerdictEvidence evidence{true, 19, 0, {}};
+    evidence.pairs = 19;
+    evidence.readings = 17;
+    evidence.beams = 361;
+    const GateResult few = judge(with_track(track, 1e-4), evidence);
     EXPECT_EQ(few.verdict, Verdict::refused);
     ASSERT_EQ(few.reasons.size(), 1U);
     EXPECT_NE(few.reasons[0].find("by 19 measured motions only"), std::string::npos) << few.reasons[0];
     EXPECT_NE(few.reasons[0].find("17 of 361 readings"), std::string::npos) << few.reasons[0];
     for (const char* accusation : {"ticks per revolution", "swapped", "direction of rotation"})
       EXPECT_EQ(few.reasons[0].find(accusation), std::string::npos) << few.reasons[0];
-    footing.pairs = 20;
-    EXPECT_EQ(judge(with_track(track, 1e-4), footing).reasons[0].find("measured motions only"),
+    evidence.pairs = 20;
+    EXPECT_EQ(judge(with_track(track, 1e-4), evidence).reasons[0].find("measured motions only"),
               std::string::npos);
   }
 }
 
 TEST(Gate, says_of_lengths_by_hardly_any_match_only_that) {
-  Footing footing{true, 5, 117, {}};
-  footing.pairs = 5;
-  footing.readings = 24;
-  footing.beams = 361;
-  footing.stood = 3;
-  const GateResult gate = judge(with_track(1.6, 1e-4), footing);
+  VerdictEvidence evidence{true, 5, 117, {}};
+  evidence.pairs = 5;
+  evidence.readings = 24;
+  evidence.beams = 361;
+  evidence.stood = 3;
+  const GateResult gate = judge(with_track(1.6, 1e-4), evidence);
   ASSERT_EQ(gate.reasons.size(), 1U);
   EXPECT_NE(gate.reasons[0].find("only 5 of 125 pairs"), std::string::npos) << gate.reasons[0];
   EXPECT_NE(gate.reasons[0].find("in 3 the wheels turned"), std::string::npos) << gate.reasons[0];
@@ -268,10 +269,10 @@ TEST(Gate, passes_remarks_on) {
   EXPECT_NE(gate.reasons[0].find("24 of 546"), std::string::npos);
 }
 
-Footing with_loss(double share, bool of_wheels = true) {
-  Footing footing = kFirm;
-  footing.losses = {{share, "363 of 1916 intervals between counts", of_wheels}};
-  return footing;
+VerdictEvidence with_loss(double share, bool of_wheels = true) {
+  VerdictEvidence evidence = kFirm;
+  evidence.losses = {{share, "363 of 1916 intervals between counts", of_wheels}};
+  return evidence;
 }
 
 TEST(Gate, warns_of_a_share_that_was_left_out_and_refuses_where_little_is_left) {
@@ -293,13 +294,13 @@ GateResult judged(double residual, double odometry, double track = 0.5, std::siz
   Calibration calibration = with_track(track, 1e-4);
   calibration.residual.noise_floor = {{1e-3, 1e-3, 5e-4}};
   calibration.residual.after = {{settings::kWarnResidual * residual * 1e-3, 1e-3, 5e-4}};
-  Footing footing = kFirm;
-  footing.pairs = 100;
-  footing.outliers = outliers;
+  VerdictEvidence evidence = kFirm;
+  evidence.pairs = 100;
+  evidence.outliers = outliers;
   const double error = settings::kWarnResidual * odometry * 0.004;
-  footing.drive_errors = {
+  evidence.drive_errors = {
       {"open_loop_10s_position", "m", 20, {}, {}, Bounded{error, 0.9 * error, 1.1 * error}, 0.004}};
-  return judge(calibration, footing);
+  return judge(calibration, evidence);
 }
 
 TEST(Gate, refuses_when_signs_of_different_rules_add_up_and_names_the_weightiest) {
@@ -323,16 +324,16 @@ TEST(Gate, one_sign_alone_never_refuses_however_heavy) {
 }
 
 TEST(Gate, what_a_remark_says_of_outliers_weighs_and_is_said_once) {
-  Footing footing = kFirm;
-  footing.pairs = 100;
-  footing.outliers = 20;
-  footing.remarks = {"20 of 100 pairs contradict all others"};
-  EXPECT_EQ(judge(sound(), footing).reasons.size(), 1U);
-  footing.outliers = 26;
-  EXPECT_EQ(judge(sound(), footing).verdict, Verdict::refused);
+  VerdictEvidence evidence = kFirm;
+  evidence.pairs = 100;
+  evidence.outliers = 20;
+  evidence.remarks = {"20 of 100 pairs contradict all others"};
+  EXPECT_EQ(judge(sound(), evidence).reasons.size(), 1U);
+  evidence.outliers = 26;
+  EXPECT_EQ(judge(sound(), evidence).verdict, Verdict::refused);
 }
 
-// Which of the three components it is, and twice the noise floor on both sides.
+// The warning names the component, of three; twice the noise floor is tried on both sides.
 TEST(Gate, warns_of_each_component_of_the_residual_beyond_twice_the_noise) {
   const char* const kNames[] = {"in x of the sensor", "in y of the sensor", "in yaw"};
   for (std::size_t i = 0; i < 3; ++i) {
@@ -392,10 +393,10 @@ TEST(Gate, of_motions_that_contradict_the_others_a_tenth_is_a_sign_and_a_quarter
   EXPECT_EQ(with_other_signs(10), Verdict::accepted_with_warnings);
   EXPECT_EQ(with_other_signs(11), Verdict::refused);
   const auto alone = [](std::size_t outliers, std::size_t pairs) {
-    Footing footing = kFirm;
-    footing.pairs = pairs;
-    footing.outliers = outliers;
-    return judge(sound(), footing);
+    VerdictEvidence evidence = kFirm;
+    evidence.pairs = pairs;
+    evidence.outliers = outliers;
+    return judge(sound(), evidence);
   };
   EXPECT_EQ(alone(25, 100).verdict, Verdict::accepted);
   ASSERT_EQ(alone(26, 100).verdict, Verdict::refused);

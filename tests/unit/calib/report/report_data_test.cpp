@@ -53,7 +53,7 @@ struct World {
   std::vector<measurement::FitData> data;
 };
 
-/// What a sensor with white noise of its scans sees when the robot moves as `truth` and `effects` say.
+/// Measurements of a sensor with white noise of its scans when the robot moves as `truth` and `effects` say.
 std::unique_ptr<World> make_world(const vehicle::EffectList& effects, const std::vector<double>& values,
                                   unsigned seed) {
   const wheels::WheelTrack track = drive(420.0);
@@ -388,7 +388,7 @@ TEST(BaseQuantities, what_stays_as_it_is_has_no_deviation) {
     EXPECT_NEAR(list[k].second.std, k == 1 ? 2e-4 : -1.0, 1e-12) << list[k].first;
 }
 
-// Of pairs that owe next to all of their errors to the wheels, over the way that these rolled.
+// Noise from pairs that owe nearly all of their errors to the wheels, over the distance that these rolled.
 TEST(ContactNoise, is_that_of_the_fit_without_what_neighbours_take_back) {
   const auto world = make_world({}, {}, 12);
   measurement::Dataset dataset;

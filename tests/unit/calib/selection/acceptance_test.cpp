@@ -1,4 +1,4 @@
-// What a candidate must show before it is added: score, size, held-out error.
+// Conditions for adding a candidate: score, size, held-out error.
 #include <gtest/gtest.h>
 
 #include <Eigen/Dense>

@@ -1,4 +1,4 @@
-// What is taken out of the model again once something else was added.
+// Terms that leave the model again once another was added.
 #include "calib/selection/backward_elimination.hpp"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-// What candidates would change in the residual, alone and beside others.
+// Changes of the residual by candidates, alone and beside others.
 #include "calib/selection/candidate_columns.hpp"
 
 #include <gtest/gtest.h>

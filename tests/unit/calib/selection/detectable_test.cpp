@@ -1,4 +1,4 @@
-// What a drive would show: larger effects are found, smaller ones are not, and those it cannot show are told.
+// Detectable effects of a drive: larger ones are found, smaller ones not, and those it cannot show are named.
 #include "calib/selection/detectable.hpp"
 
 #include <gtest/gtest.h>

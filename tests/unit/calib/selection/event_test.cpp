@@ -1,4 +1,4 @@
-// What is otherwise from one moment on: both wheels, the track, or where the sensor sits; and what fades.
+// Changes from one moment on: both wheels, the track, or where the sensor sits; and changes that fade.
 #include <gtest/gtest.h>
 
 #include <Eigen/Dense>

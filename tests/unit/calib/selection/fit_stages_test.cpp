@@ -81,8 +81,8 @@ TEST(FitStages, hand_on_a_fit_that_failed) {
   ASSERT_TRUE(failed.failure) << "straight ahead nothing tells the track width";
   const terms::Request request;
   EXPECT_TRUE(mount_reference(failed, silent_settling()).failure);
-  EXPECT_TRUE(even_out_scans(failed, silent_settling()).failure);
-  EXPECT_TRUE(let_scans_sweep(failed, request, silent_settling()).failure);
+  EXPECT_TRUE(choose_scan_stamps(failed, silent_settling()).failure);
+  EXPECT_TRUE(choose_sweep_timing(failed, request, silent_settling()).failure);
   EXPECT_TRUE(correct_lidar(failed, request, silent_settling()).fit.failure);
   EXPECT_TRUE(placement_of(failed, {}, silent_settling().progress).paths.empty());
   EXPECT_TRUE(locate(failed, {}).failure);
@@ -92,7 +92,7 @@ TEST(FitStages, that_do_not_apply_hand_on_the_fit_as_it_is) {
   const Recording recording = driven_recording({});
   const estimation::Fit fit = settled_fit({&recording, 1});
   const estimation::Fit after =
-      let_scans_sweep(even_out_scans(fit, silent_settling()), {}, silent_settling());
+      choose_sweep_timing(choose_scan_stamps(fit, silent_settling()), {}, silent_settling());
   EXPECT_EQ(after.model.parameters, fit.model.parameters);
   EXPECT_TRUE(after.dataset.recordings.are_those_of(fit.dataset.recordings));
 }

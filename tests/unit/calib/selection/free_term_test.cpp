@@ -1,4 +1,4 @@
-// What the robot does at the moment may change anything that it moves by: each law is found as what it is.
+// The momentary motion of the robot may change anything that it moves by: each law is found as what it is.
 #include <gtest/gtest.h>
 
 #include <tuple>

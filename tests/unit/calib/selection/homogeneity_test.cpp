@@ -11,7 +11,7 @@ namespace {
 
 constexpr int kPairs = 240;  // of half a second
 
-/// What a sensor measured on such a robot.
+/// Measurements of a sensor on such a robot.
 measurement::FitData driven(const vehicle::DriveModel& model, const wheels::BaseParameters& base,
                             unsigned seed) {
   std::vector<vehicle::Interval> intervals;

@@ -1,4 +1,4 @@
-// What left-out pairs go with.
+// Variables that left-out pairs go with.
 #include <gtest/gtest.h>
 
 #include <optional>
@@ -9,7 +9,7 @@
 namespace odomcalib::calib::selection::outlier_trace_test {
 namespace {
 
-/// What is known of the outliers when these pairs are wrong by 20 mrad.
+/// Trace of the outliers when these pairs are wrong by 20 mrad.
 std::optional<OutlierTrace> traced(const vehicle::DriveModel& model, const std::vector<std::size_t>& wrong) {
   measurement::FitData data = measured(model, {}, {});
   for (const std::size_t k : wrong) data.pairs[k].motion.yaw += 0.02;
@@ -76,7 +76,7 @@ std::vector<measurement::PlacedScan> places_of(const std::vector<measurement::Se
 
 enum class Guilty { wheels, matches };
 
-/// Of pairs in which the robot comes 30 mm less far than its wheels, or in which a match says so.
+/// Cause of outliers where the robot comes 30 mm less far than its wheels, or where a match says so.
 OutlierCause cause_when(Guilty guilty) {
   const vehicle::DriveModel model = jerky_model();
   measurement::FitData data = measured(model, {}, {});

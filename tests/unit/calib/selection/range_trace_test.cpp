@@ -149,7 +149,7 @@ TEST(RangeTrace, a_head_whose_beams_point_aside_has_no_offset) {
   }
 }
 
-// What a map gains by being adjusted once more is no gain of the law that it was adjusted with.
+// The gain of a map from one more adjustment is no gain of the law that it was adjusted with.
 TEST(RangeTrace, a_slant_of_which_nothing_is_left_once_the_map_has_settled_is_none) {
   const Seen all = seen([](const math::Pose& pose, unsigned seed) {
     return wrong_scan(pose, seed, [](double, double) { return 0.0; });

@@ -1,4 +1,4 @@
-// What repeats itself as something rolls that no encoder sees.
+// Waves that repeat as something rolls that no encoder sees.
 #include <gtest/gtest.h>
 
 #include "calib/selection/rolling_waves.hpp"

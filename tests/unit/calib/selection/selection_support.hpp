@@ -75,7 +75,7 @@ inline vehicle::DriveModel stopping_model() {
   return {std::move(track), context};
 }
 
-/// What a sensor with 0.5 mm and 0.5 mrad of noise would have measured, had the robot these effects.
+/// Measurements of a sensor with 0.5 mm and 0.5 mrad of noise, had the robot these effects.
 inline measurement::FitData measured(const vehicle::DriveModel& model, const vehicle::EffectList& effects,
                                      const std::vector<double>& values,
                                      const std::vector<vehicle::Interval>& intervals) {
@@ -103,7 +103,7 @@ inline measurement::FitData measured(const vehicle::DriveModel& model, const veh
   return measured(model, effects, values, intervals);
 }
 
-/// What the search makes of it.
+/// Result of the search on these data.
 inline SearchResult searched(const measurement::FitData& data) {
   const auto fit = estimation::fit_joint({&data, 1}, {}, vehicle::to_vector(kBase));
   EXPECT_TRUE(fit) << "seed " << kSeed;

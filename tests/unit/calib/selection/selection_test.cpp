@@ -479,7 +479,7 @@ TEST(Selection, a_seat_that_only_the_opposite_push_changes_is_no_fading_memory) 
   EXPECT_NEAR(result.model.fit.parameters(vehicle::kBaseCount), 0.01, 5e-4);
 }
 
-// Of a slight seat a fading memory shows too little to be found and put right afterwards.
+// A fading memory shows too little of a slight seat to be found and put right afterwards.
 TEST(Selection, a_slight_seat_is_found_as_what_it_is) {
   const vehicle::DriveModel model = jerky_model();
   const std::size_t hard = vehicle::kMemorySpans.size() + 2;

@@ -83,7 +83,7 @@ Drive round_the_block() {
   return driver.drive();
 }
 
-/// Of a keyframe, in the frame of the lidar's first pose.
+/// Error of a keyframe, in the frame of the lidar's first pose.
 double error_of(const GraphVertex& vertex, const Drive& drive, std::size_t scan) {
   const math::Pose mount{0.1, 0.0, 0.0};
   const math::Pose truth = between(compose(drive.truth.front(), mount), compose(drive.truth[scan], mount));

@@ -161,7 +161,7 @@ TEST(LidarEffect, too_few_pairs_tell_nothing) {
 
 using ErrorOfBeam = std::function<BeamShift(const Sighting&)>;
 
-/// What two scans that face different ways disagree about.
+/// Disagreement of two scans that face different ways.
 /// @param view rad, to either side
 measurement::HeadingPair seen_with(const ErrorOfBeam& error, double range, double view,
                                    std::mt19937& random) {
@@ -244,7 +244,7 @@ TEST(LidarEffect, that_a_name_stood_in_for_takes_its_place) {
     EXPECT_EQ(finding.effect->name(), "bearing") << finding.values.front() << ", seed " << kSeed;
 }
 
-/// What a head that goes all the way round sees in a room of one size.
+/// Findings of a head that goes all the way round, in a room of one size.
 std::vector<LidarFinding> found_all_round(const std::function<double(double)>& angular,
                                           std::mt19937& random) {
   const auto error = [&](const Sighting& s) { return BeamShift{0.0, angular(s.bearing)}; };

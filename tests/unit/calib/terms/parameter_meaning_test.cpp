@@ -1,4 +1,4 @@
-// What a report says of a parameter stands in one table: it has all of them, and no others.
+// The statements of a report on parameters stand in one table: it has all parameters, and no others.
 #include "calib/terms/parameter_meaning.hpp"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-// What smooth terms can describe, and how they act.
+// Laws that smooth terms can describe, and how they act.
 #include <gtest/gtest.h>
 
 #include <Eigen/Dense>
@@ -127,7 +127,7 @@ TEST(SmoothTerm, may_be_as_rough_as_it_was_found) {
           .empty());
 }
 
-/// Of the best sum of the smooth term's functions and a constant to what is 1 in a square and 0 elsewhere.
+/// Misfit of the best sum of the smooth term's functions and a constant to a rug: 1 in a square, 0 elsewhere.
 double misfit_of_rug(const SmoothTerm& smooth) {
   constexpr int kSteps = 30;  // each way
   const auto functions = static_cast<Eigen::Index>(function_count(smooth));
@@ -300,7 +300,7 @@ std::vector<selection::Reshaped> in_shapes(vehicle::Covariate covariate, std::si
 TEST(SmoothTerm, of_an_event_takes_the_middle_of_what_is_open) {
   const std::size_t relays = vehicle::kMemorySpans.size();
   const auto chosen = [](const std::vector<selection::Reshaped>& shapes) {
-    return most_sensible_event(shapes, 502.0).smooth.memory;
+    return median_threshold_of(shapes, 502.0).smooth.memory;
   };
   EXPECT_EQ(chosen(in_shapes(vehicle::Covariate::since_stop, 0, vehicle::kStops.size(), {4, 6, 5})), 5U);
   EXPECT_EQ(chosen(in_shapes(vehicle::Covariate::since_stop, 0, vehicle::kStops.size(), {7})), 7U);
@@ -309,7 +309,7 @@ TEST(SmoothTerm, of_an_event_takes_the_middle_of_what_is_open) {
   EXPECT_EQ(chosen(in_shapes(vehicle::Covariate::previous_acceleration, relays,
                              vehicle::kAccelerationThresholds.size(), {0, 1, 2})),
             relays + 1);
-  // What fades is another matter.
+  // Fading memories are another matter.
   EXPECT_EQ(chosen(in_shapes(vehicle::Covariate::previous_acceleration, 0,
                              relays + vehicle::kAccelerationThresholds.size(), {0, relays + 3})),
             relays + 3);

@@ -33,7 +33,7 @@ std::vector<StepContext> contexts_of(const std::vector<Leg>& legs) {
   return make_context(track, kBase);
 }
 
-/// Of a left wheel that shows `counts` one after the other.
+/// Contexts of a left wheel that shows `counts` one after the other.
 std::vector<StepContext> contexts_of_counts(const std::vector<int>& counts) {
   wheels::WheelTrack track;
   track.tick_angle = 0.01;
@@ -58,7 +58,7 @@ TEST(Reversal, counts_from_where_the_wheel_turned) {
   EXPECT_NEAR(contexts[5].left_since_reversal, 0.07, 1e-12);
 }
 
-/// Of what is lost to a play of 0.05 rad, in each interval.
+/// Loss to a play of 0.05 rad, in each interval.
 std::vector<double> lost_of_counts(const std::vector<int>& counts) {
   const auto play = static_cast<std::size_t>(std::find(kPlays.begin(), kPlays.end(), 0.05) - kPlays.begin());
   std::vector<double> lost;
@@ -240,7 +240,7 @@ TEST(StepContext, an_acceleration_moves_a_seat_when_it_begins_whatever_the_thres
 TEST(StepContext, what_a_motion_has_wound_up_unwinds_once_in_the_stop_after_it) {
   wheels::WheelTrack track = driven_at([](double t) { return t < 4.0 || (t > 5.0 && t < 5.01) ? 5.0 : 0.0; });
   const auto sums = [](const std::vector<StepContext>& context, std::size_t winding) {
-    Unwound sum;
+    ReleasedWinding sum;
     for (const StepContext& c : context) {
       sum.way += c.unwound.at(winding).way;
       sum.turn += c.unwound.at(winding).turn;

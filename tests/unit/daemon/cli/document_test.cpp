@@ -70,7 +70,7 @@ TEST(Report, text_and_page_say_the_same) {
   }
 }
 
-/// What stands before everything that is folded.
+/// Part of the page before everything that is folded.
 std::string first_screen_of(const std::string& page) { return page.substr(0, page.find("<details>")); }
 
 TEST(Report, first_screen_answers_what_is_asked_first) {

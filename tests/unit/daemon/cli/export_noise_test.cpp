@@ -116,7 +116,7 @@ std::pair<double, double> innovations(const std::vector<Step>& steps, std::uint6
   return {sum, freedom};
 }
 
-/// Of 100 drives, those whose sum lies in the 95 % band of chi-squared, which so many terms make normal.
+/// Number of 100 drives whose sum lies in the 95 % band of chi-squared, which so many terms make normal.
 template <typename Due, typename Noise>
 int count_in_band(Due is_due, Noise noise_of, int every) {
   int inside = 0;
@@ -180,7 +180,7 @@ TEST(ExportNoise, of_robot_localization_makes_innovations_that_are_as_large_as_t
   EXPECT_LE(inside, 98);
 }
 
-/// What slam_toolbox's matcher does with odometry, by its exported parameters.
+/// Treatment of odometry by slam_toolbox's matcher, by its exported parameters.
 struct KartoMatcher {
   double step, smear, range;      ///< m
   double distance, angle;         ///< deviations of the penalties, m and rad
@@ -195,7 +195,7 @@ struct KartoMatcher {
         place_match(std::pow(value_in(text, "correlation_search_space_resolution"), 2) / 6.0),
         yaw_match(std::pow(value_in(text, "fine_search_angle_offset"), 2) / 6.0) {}
 
-  /// Of the pose before a match, as docs/user/library.md has it.
+  /// Deviations of the pose before a match, as docs/user/library.md has it.
   [[nodiscard]] double place_before() const { return std::pow(distance / smear, 2) / 0.4 * place_match; }
   [[nodiscard]] double yaw_before() const { return std::pow(angle * range / smear, 2) / 0.4 * yaw_match; }
 };

@@ -1,4 +1,4 @@
-// What the live page shows, from answers and messages of the daemon.
+// State that the live page shows, from answers and messages of the daemon.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

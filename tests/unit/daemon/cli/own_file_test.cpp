@@ -194,7 +194,7 @@ TEST(UrdfFile, with_expressions_of_xacro_is_refused_by_name) {
   EXPECT_THAT(moved(replaced(kRobot, "base_scan", "${prefix}base_scan")),
               HasSubstr("made by an expression of xacro"));
   EXPECT_THAT(moved(replaced(kRobot, "0.10 0.0 0.182", "0.1 0")), HasSubstr("is not three numbers"));
-  // What another text stands for is not replaced where it is used.
+  // The text of an entity is not replaced where it is used.
   const std::string entity =
       "<!DOCTYPE robot [<!ENTITY o '<origin xyz=\"0 0 0\"/>'>]>\n<robot><joint name=\"s\" type=\"fixed\">"
       "<parent link=\"base_link\"/><child link=\"laser\"/>&o;</joint></robot>";

@@ -19,7 +19,7 @@ constexpr double kRadians = std::numbers::pi / 180.0;
 
 using Names = std::set<std::string>;
 
-/// What is between the program and the world.
+/// Everything between the program and the world.
 class Robot {
  public:
   explicit Robot(Names faults, double lidar_yaw = 0.0, double configured_yaw = 0.0)

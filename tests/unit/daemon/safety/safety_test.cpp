@@ -75,7 +75,7 @@ TEST(EncoderFreshness, a_turning_wheel_must_count_and_a_standing_one_need_not) {
   EXPECT_NE(stale->find("left"), std::string::npos);
 }
 
-/// What is said of a robot that drives and turns steadily for a second, with a reading every `step` s.
+/// Message about a robot that drives and turns steadily for a second, with a reading every `step` s.
 std::optional<std::string> said_of(double v, double w, double step, const routines::Limits& limits = {}) {
   SpeedWatch watch(limits);
   for (double t = 0.0; t < 1.0; t += step) {
@@ -126,7 +126,7 @@ TEST(SpeedWatch, lets_a_drive_follow_its_command_late) {
   }
 }
 
-// What excuses a speed is a command of the last 0.5 s: the window of the measurement and the lag of a drive.
+// A speed is excused by a command of the last 0.5 s: the window of the measurement and the lag of a drive.
 TEST(SpeedWatch, a_command_of_earlier_excuses_nothing) {
   SpeedWatch watch({});
   for (int i = 0; i <= 100; ++i) {
@@ -146,7 +146,7 @@ TEST(SpeedWatch, goes_by_the_limits_of_the_motion_and_never_beyond_the_caps) {
   EXPECT_TRUE(said_of(0.39, 0.0, 0.02, {.speed = 2.0}));
 }
 
-// What was a count too many in one reading is not in the next.
+// A count too many in one reading is gone in the next.
 TEST(SpeedWatch, a_single_reading_of_a_few_counts_too_many_is_no_speed) {
   SpeedWatch watch({});
   for (int i = 0; i < 50; ++i) {

@@ -1,4 +1,4 @@
-// What clients send at once: who is served, in which order, and that a stop waits for nobody.
+// Calls that clients send at once: who is served, in which order, and that a stop waits for nobody.
 #include "daemon/service/control_server.hpp"
 
 #include <grp.h>
@@ -183,7 +183,7 @@ TEST(Permission, is_for_root_the_own_user_and_the_group_alone) {
   EXPECT_FALSE(may_connect(kNobody, {}, kOurs));
 }
 
-/// What a process of another user is told: the first answer, or nothing.
+/// First answer to a process of another user, or nothing.
 std::string told_to(uid_t user, const std::vector<gid_t>& groups, const std::filesystem::path& socket,
                     const std::function<void()>& serve) {
   std::array<int, 2> ends{};

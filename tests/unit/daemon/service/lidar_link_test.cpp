@@ -398,8 +398,7 @@ TEST(LidarLinks, what_a_lidar_cannot_be_reached_by_is_refused_with_an_example) {
   EXPECT_FALSE(LidarLink::create("serial:/dev/x", "ld99").ok());
 }
 
-/// What is said of a lidar at a name, when the name service has answered. Its own times pass outside of the
-/// clock.
+/// Report on a lidar at a name, when the name service has answered. Its own times pass outside of the clock.
 std::string told_of(LidarLink& link) {
   for (int k = 0; k < 2000; ++k) {
     link.step(At(0.001 * k));

@@ -19,7 +19,7 @@ namespace {
 using std::chrono::steady_clock;
 namespace settings = service::settings;
 
-/// What arrived, and whether it holds up whoever sends.
+/// Messages that arrived, and whether the network holds up whoever sends.
 struct Network {
   std::atomic<bool> stalls = false;
   std::atomic<int> held = 0;  // messages that have come to it

@@ -1,4 +1,4 @@
-// Which drives prove values that wait to be stored, and which do not.
+// Drives that prove values that wait to be stored, and drives that do not.
 #include "daemon/writeback/drive_proof.hpp"
 
 #include <gmock/gmock.h>

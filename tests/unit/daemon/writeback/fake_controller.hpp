@@ -152,14 +152,14 @@ struct WriteBackBench {
   [[nodiscard]] bool all_new() const { return is_new(memory.ram) && is_new(memory.stored); }
 };
 
-/// What a crash may do besides: the controller loses its power, the last record of the journal is torn.
+/// Further damage by a crash: the controller loses its power, the last record of the journal is torn.
 inline void lose(Memory& memory, const std::filesystem::path& journal, bool power, bool end_of_record) {
   if (power) memory.power_cycle();
   if (end_of_record && std::filesystem::file_size(journal) > 3)
     std::filesystem::resize_file(journal, std::filesystem::file_size(journal) - 3);
 }
 
-/// What the next daemon makes of it: all of one set, both memories alike, and the journal ended.
+/// Recovery by the next daemon: values all of one set, both memories alike, and the journal ended.
 struct AfterCrash {
   AfterCrash(Memory& memory, const std::filesystem::path& path) {
     FakeController controller(memory);

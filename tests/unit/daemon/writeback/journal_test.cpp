@@ -1,4 +1,4 @@
-// What is on the disk: journal, history, the calibration in force.
+// Files on the disk: journal, history, the calibration in force.
 #include <sys/resource.h>
 #include <zlib.h>
 
@@ -172,7 +172,7 @@ std::pair<std::vector<JournalState>, bool> content_of(const std::filesystem::pat
   return {states, text.find_first_not_of('\0', begin) == std::string::npos};
 }
 
-// What a write-back needs to its end is there when it begins, and a crash does not give it away.
+// Space that a write-back needs to its end is there when it begins, and a crash does not give it away.
 TEST(Journal, has_space_for_a_whole_write_back_however_full_the_disk_gets_meanwhile) {
   const TemporaryFolder folder;
   const auto path = folder / "journal";
@@ -283,7 +283,7 @@ TEST(CalibrationInForce, is_the_announced_one_once_it_is_settled) {
   EXPECT_FALSE(std::filesystem::exists(calibrations.path()));
   ASSERT_TRUE(calibrations.settle(first).ok());
   EXPECT_EQ(read_file_bytes(calibrations.path()).value(), "first");
-  // What the journal still needs is kept while others are announced and forgotten.
+  // A calibration that the journal still needs is kept while others are announced and forgotten.
   const auto second = calibrations.announce("second", first);
   const auto third = calibrations.announce("third", first);
   EXPECT_EQ(calibrations.announced(first), "first");
@@ -410,7 +410,7 @@ TEST_F(FullHistory, keeps_the_newest_fifty_newest_first) {
   expect_newest_fifty(History(folder_ / "history"));  // what the disk has
 }
 
-// What the fifty newest have pushed out does not come back with the next start.
+// Entries that the fifty newest have pushed out do not come back with the next start.
 TEST_F(FullHistory, misses_nothing_that_is_older_than_it_keeps) {
   JournalRecord end = record_of(JournalState::commit);
   end.origin = some_provenance();

@@ -1,4 +1,4 @@
-// What becomes of a write-back that was interrupted, and of the next one after it.
+// Outcome of a write-back that was interrupted, and of the next one after it.
 #include "tests/unit/daemon/writeback/fake_controller.hpp"
 
 namespace odomcalib::recovery_test {

@@ -53,7 +53,7 @@ class Bench {
     for (const double end = now + seconds; now < end && controller->state() != wanted;) turn();
     return controller->state() == wanted;
   }
-  /// What the controller has to say now reaches the device, without another turn of the controller.
+  /// Carries the controller's output to the device now, without another turn of the controller.
   void flush() {
     send();
     for (int i = 0; i < 5; ++i) {

@@ -1,5 +1,5 @@
-// What people reported of other programs, made small: each case gives its right value. The files are not part
-// of the repository; what they show is repeated with small inputs in the tests beside this one.
+// Problems that people reported of other programs, made small: each case gives its right value. The files are
+// not part of the repository; what they show is repeated with small inputs in the tests beside this one.
 #include <gtest/gtest.h>
 
 #include <cmath>

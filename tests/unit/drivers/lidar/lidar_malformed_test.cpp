@@ -1,4 +1,4 @@
-// What every lidar driver owes whatever arrives: each byte accounted for, finite scans, no wrong frame
+// Duties of every lidar driver whatever arrives: each byte accounted for, finite scans, no wrong frame
 // accepted.
 #include <gtest/gtest.h>
 

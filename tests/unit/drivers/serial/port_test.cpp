@@ -39,7 +39,7 @@ class Pty {
   void say(const std::string& text) const {
     EXPECT_EQ(::write(master_, text.data(), text.size()), static_cast<ssize_t>(text.size()));
   }
-  /// What arrives until nothing comes for so long.
+  /// Text that arrives until nothing comes for so long.
   [[nodiscard]] std::string hear(int quiet_ms = 50) const {
     std::string out;
     pollfd state{master_, POLLIN, 0};

@@ -1,5 +1,5 @@
-// What people reported of ROS recordings, made small: the files are not part of the repository. Each kind is
-// made anew in the tests beside this one.
+// Problems that people reported of ROS recordings, made small: the files are not part of the repository. Each
+// kind is made anew in the tests beside this one.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

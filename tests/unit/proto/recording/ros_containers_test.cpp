@@ -88,7 +88,7 @@ TEST(RosContainers, hold_the_same_drive_in_every_packing_and_encoding) {
   }
 }
 
-/// What is whole is used, and a file that was cut says so.
+/// Whole parts are used, and a file that was cut says so.
 TEST(RosContainers, that_are_cut_off_give_what_is_whole) {
   for (const Form& form : forms()) {
     SCOPED_TRACE(form.name);

@@ -1,4 +1,4 @@
-// What a file holds, for who looks at it.
+// Content of a file, for whoever looks at it.
 #include "proto/recording/overview.hpp"
 
 #include <gmock/gmock.h>

@@ -37,7 +37,7 @@ inline Recording small_drive() {
 /// Header stamps as times from the first whole second: to the nanosecond.
 constexpr double kNanosecond = 1.01e-9;
 
-/// What a reader must find of small_drive(), told by joints or by odometry.
+/// Expects that a reader found small_drive(), given by joints or by odometry.
 inline void expect_small_drive(const Recording& found, MotionSource motion) {
   const Recording drive = small_drive();
   EXPECT_EQ(found.motion, motion);
@@ -96,7 +96,7 @@ inline void add_joints(sim::RosLog& log, const std::string& topic, std::int64_t 
           encode_joints(log.wire, {time, ""}, names, positions, velocities));
 }
 
-/// What was told, one a line.
+/// All remarks, one a line.
 inline std::string all_told(const std::vector<std::string>& remarks) {
   std::string out;
   for (const auto& remark : remarks) out += remark + "\n";

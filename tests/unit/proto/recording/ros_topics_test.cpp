@@ -1,4 +1,4 @@
-// Which topic of a ROS recording is taken as what, and what is said about it.
+// Assignment of the topics of a ROS recording, and the remarks on it.
 #include <gtest/gtest.h>
 
 #include "tests/unit/proto/recording/ros_support.hpp"

@@ -59,7 +59,7 @@ TEST(RosTypes, that_are_not_said_of_the_scans_only_are_a_remark) {
   // Odometry is taken, but wheels would be finer.
   EXPECT_TRUE(told(value_of(read_ros(write_mcap(without_types({"/joint_states"})))),
                    "say what it is: --topic wheels=/joint_states"));
-  // Of topics that are not needed nothing is said but that they were left out.
+  // Topics that are not needed are only reported as left out.
   EXPECT_FALSE(told(value_of(read_ros(write_mcap(without_types({"/rosout"})))), "no schema"));
 }
 
@@ -67,7 +67,7 @@ TEST(RosTypes, that_are_chosen_wrongly_are_refused) {
   const auto result = read_ros(write_mcap(without_types(kAll)), {{"wheels", "/scan", {}}});
   ASSERT_FALSE(result.ok());
   EXPECT_THAT(result.error().text(), HasSubstr("no message of it is one"));
-  // What the file says is not overruled.
+  // A type that the file states is not overruled.
   const auto said = read_ros(write_mcap(without_types({})), {{"wheels", "/scan", {}}});
   ASSERT_FALSE(said.ok());
   EXPECT_THAT(said.error().text(), HasSubstr("cannot be the wheels"));

@@ -1,5 +1,5 @@
-// Which joints of a ROS recording are the wheels: four of them, each on a topic of its own, or none that the
-// names tell.
+// The wheels among the joints of a ROS recording: four of them, each on a topic of its own, or none that the
+// names show.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

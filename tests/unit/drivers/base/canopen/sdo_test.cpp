@@ -183,7 +183,7 @@ TEST(Sdo, segments_that_come_twice_are_taken_once) {
   EXPECT_EQ(client.counters()["sdo_unexpected"], 7U);
 }
 
-// What is over may be answered once more: of a read while the object is written, of a write while it is read.
+// A finished request may be answered once more: a read while the object is written, a write while it is read.
 TEST(Sdo, a_late_answer_of_another_kind_for_the_same_object_is_not_taken) {
   SdoClient client(kNode);
   const CanFrame of_read = answer({0x43, 0x00, 0x21, 0x01, 1}), of_write = answer({0x60, 0x00, 0x21, 0x01});

@@ -52,7 +52,7 @@ TEST(LateFrames, nothing_is_written_while_an_earlier_write_may_be_on_its_way) {
 
 TEST(LateFrames, a_value_that_is_not_the_one_last_known_is_believed_when_it_was_read_twice) {
   AtRest bench;
-  // Of values that are all known, a check begins at once.
+  // A check of values that are all known begins at once.
   ASSERT_TRUE(bench.controller->start_read_parameters(bench.now).ok());
   EXPECT_FALSE(bench.job().error);
   bench.start_writing({{"left_wheel_diameter", 0.16}});

@@ -28,7 +28,7 @@ struct Change {
   std::uint32_t value;
 };
 
-// What keeps the robot safe, and what counts and commands go by.
+// Settings that keep the robot safe, and those that counts and commands go by.
 const Change kChanges[] = {
     {"1016:01", {0x1016, 1}, 0},           {"1017:00", {0x1017, 0}, 31},
     {"6007:00", {0x6007, 0}, 0},           {"605A:00", {0x605A, 0}, 0},

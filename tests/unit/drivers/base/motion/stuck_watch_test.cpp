@@ -1,4 +1,4 @@
-// Which standing counts are a broken encoder, and after how long; and which are not.
+// Standing counts that are a broken encoder, and after how long; and those that are not.
 #include "drivers/base/motion/stuck_watch.hpp"
 
 #include <gtest/gtest.h>

@@ -16,7 +16,7 @@ using test::CanBench;
 using test::SerialBench;
 using test::shipped;
 
-/// What all of them have in common: one device, one bench, figures of the profile.
+/// Common parts of all of them: one device, one bench, figures of the profile.
 struct Case {
   const char* profile;
   double counts_per_turn;
@@ -129,7 +129,7 @@ TYPED_TEST(Devices, another_program_that_commands_them_stops_the_wheels) {
   ASSERT_NO_FATAL_FAILURE(enable(bench));
   bench.drive(3.0, 3.0, 0.5);
   ASSERT_FALSE(bench.happened("other_master")) << "its own commands";
-  // What this program sends, as if somebody else had sent it.
+  // Frames of this program, as if somebody else had sent them.
   (void)bench.controller->command(3.0, 3.0, bench.now);
   bench.controller->on_time(bench.now += 0.05);
   const auto sent = bench.controller->take_frames();
@@ -223,7 +223,7 @@ TYPED_TEST(Devices, what_is_not_a_number_is_refused_and_stops) {
   EXPECT_TRUE(bench.happened("bad_command"));
 }
 
-/// What a reading comes to.
+/// Result of a reading.
 ParameterJobResult read(Bench& bench) {
   EXPECT_TRUE(bench.controller->start_read_parameters(bench.now).ok());
   auto result = bench.controller->take_job_result();
@@ -292,7 +292,7 @@ TEST(Vesc, its_configuration_is_read_in_pieces) {
   EXPECT_EQ(bench.controller->counters()["bad_packets"], 0U);
 }
 
-/// What a device of this profile says of itself in a message of this name, asked as on its wire.
+/// Statement of a device of this profile about itself in a message of this name, requested as on its wire.
 template <typename Device>
 std::optional<DeviceMessage> said_by(Device& device, const std::string& profile, const std::string& name) {
   const auto protocol =
@@ -420,7 +420,7 @@ TEST(RosArduino, accounts_for_every_byte) {
   EXPECT_NEAR(static_cast<double>(bench.ticks.size()), 50.0 * (bench.now - bench.ticks.front().t), 10.0);
 }
 
-// What one question in flight must not do to a stop, and a stop not to the questions.
+// One question in flight must not disturb a stop, nor a stop the questions.
 TEST(RosArduino, goes_on_counting_while_stops_are_repeated) {
   sim::ArduinoBoard device;
   SerialBench bench(shipped("ros_arduino"), device);

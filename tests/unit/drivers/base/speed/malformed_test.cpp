@@ -89,7 +89,7 @@ TEST(CanProtocolLengths, every_message_cut_at_every_byte_is_refused) {
 
 class SerialProtocols : public testing::TestWithParam<const char*> {};
 
-/// What a device says in two seconds.
+/// Bytes that a device sends in two seconds.
 ByteString session(const std::string& name) {
   std::unique_ptr<sim::SerialDevice> device;
   std::string out;

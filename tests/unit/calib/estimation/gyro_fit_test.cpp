@@ -1,4 +1,4 @@
-#include "calib/estimation/gyro_witness.hpp"
+#include "calib/estimation/gyro_fit.hpp"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 #include "calib/vehicle/step_context.hpp"
 #include "tests/unit/calib/estimation/driven_wheels.hpp"
 
-namespace odomcalib::calib::estimation::gyro_witness_test {
+namespace odomcalib::calib::estimation::gyro_fit_test {
 namespace {
 
 constexpr double kDegree = math::kPi / 180.0;
@@ -52,7 +52,7 @@ struct Drive {
     made.covariance = kLidar * kLidar * Eigen::Matrix3d::Identity();
     return made;
   }
-  /// Of the robot that turned with its slip.
+  /// Adds the gyro readings of the robot that turned with its slip.
   void read(const GyroOptions& gyro) {
     const auto turning = model.trajectory(vehicle::as_span(vehicle::to_vector(kTruth)), {});
     for (double t = 0.5; t < 199.5; t += kRate) {
@@ -64,7 +64,7 @@ struct Drive {
       recordings[0].gyro.push_back({t, gyro.scale * turn + gyro.bias + gyro.noise * gauss(engine)});
     }
   }
-  [[nodiscard]] GyroWitness weigh() const { return weigh_gyros(data, {}, fit, recordings); }
+  [[nodiscard]] GyroFit weigh() const { return fit_gyros(data, {}, fit, recordings); }
 
   vehicle::DriveModel model;
   std::mt19937 engine;
@@ -79,9 +79,9 @@ double deviation(const Eigen::MatrixXd& covariance) {
   return std::sqrt(covariance(vehicle::kTrackWidth, vehicle::kTrackWidth));
 }
 
-TEST(GyroWitness, S2_40_where_the_lidar_sees_little_the_track_width_is_known_better) {
+TEST(GyroFit, S2_40_where_the_lidar_sees_little_the_track_width_is_known_better) {
   const Drive drive(1, 8);
-  const GyroWitness witness = drive.weigh();
+  const GyroFit witness = drive.weigh();
   ASSERT_FALSE(witness.gyros[0].fault) << *witness.gyros[0].fault;
   std::printf("track +- %.6f without, %.6f with a gyro; scale %.4f +- %.4f, bias %.5f, offset %.4f\n",
               deviation(drive.fit.covariance), deviation(witness.covariance), witness.gyros[0].scale,
@@ -91,12 +91,12 @@ TEST(GyroWitness, S2_40_where_the_lidar_sees_little_the_track_width_is_known_bet
   EXPECT_NEAR(witness.gyros[0].bias, 0.01, 1e-3);
 }
 
-TEST(GyroWitness, S2_40_its_deviation_is_that_of_its_errors) {
+TEST(GyroFit, S2_40_its_deviation_is_that_of_its_errors) {
   constexpr unsigned kRuns = 60;
   double before = 0.0, after = 0.0, stated = 0.0;
   for (unsigned run = 0; run < kRuns; ++run) {
     const Drive drive(100 + run, 8);
-    const GyroWitness witness = drive.weigh();
+    const GyroFit witness = drive.weigh();
     ASSERT_FALSE(witness.gyros[0].fault) << *witness.gyros[0].fault;
     before += std::pow(drive.fit.parameters(vehicle::kTrackWidth) - kTruth.track_width, 2);
     after += std::pow(witness.parameters(vehicle::kTrackWidth) - kTruth.track_width, 2);
@@ -109,9 +109,9 @@ TEST(GyroWitness, S2_40_its_deviation_is_that_of_its_errors) {
   EXPECT_LT(std::sqrt(stated / after), 1.5);
 }
 
-TEST(GyroWitness, S2_40_the_clock_of_its_own_is_found) {
+TEST(GyroFit, S2_40_the_clock_of_its_own_is_found) {
   for (const double offset : {-0.23, 0.0, 0.107}) {
-    const GyroWitness witness = Drive(2, 1, {1.0, 0.0, offset, kNoise}).weigh();
+    const GyroFit witness = Drive(2, 1, {1.0, 0.0, offset, kNoise}).weigh();
     ASSERT_FALSE(witness.gyros[0].fault) << *witness.gyros[0].fault;
     EXPECT_NEAR(witness.gyros[0].offset, offset, 5e-3);
   }
@@ -127,7 +127,7 @@ class FaultyGyro : public ::testing::TestWithParam<Faulty> {};
 
 TEST_P(FaultyGyro, S2_40_is_named_and_changes_nothing) {
   const Drive drive(3, 4, GetParam().gyro);
-  const GyroWitness witness = drive.weigh();
+  const GyroFit witness = drive.weigh();
   ASSERT_TRUE(witness.gyros[0].fault);
   EXPECT_NE(witness.gyros[0].fault->find(GetParam().says), std::string::npos) << *witness.gyros[0].fault;
   EXPECT_EQ(witness.parameters, drive.fit.parameters);
@@ -145,16 +145,16 @@ INSTANTIATE_TEST_SUITE_P(
                       Faulty{"another_axis", {0.0, 0.01, 0.0, 0.05}, "does not follow"}),
     [](const auto& test) { return test.param.name; });
 
-TEST(GyroWitness, one_within_the_tolerance_of_gyros_is_no_fault) {
+TEST(GyroFit, one_within_the_tolerance_of_gyros_is_no_fault) {
   for (const double scale : {0.93, 1.07})
     EXPECT_FALSE(Drive(4, 4, {scale, 0.0, 0.0, kNoise}).weigh().gyros[0].fault);
 }
 
-TEST(GyroWitness, without_one_or_with_few_samples_the_fit_stands) {
+TEST(GyroFit, without_one_or_with_few_samples_the_fit_stands) {
   Drive drive(5, 4);
   drive.recordings[0].gyro.resize(100);
   for (int k = 0; k < 2; ++k) {
-    const GyroWitness witness = drive.weigh();
+    const GyroFit witness = drive.weigh();
     EXPECT_EQ(witness.gyros[0].used, 0U);
     EXPECT_EQ(witness.parameters, drive.fit.parameters);
     EXPECT_EQ(witness.covariance, drive.fit.covariance);
@@ -163,4 +163,4 @@ TEST(GyroWitness, without_one_or_with_few_samples_the_fit_stands) {
 }
 
 }  // namespace
-}  // namespace odomcalib::calib::estimation::gyro_witness_test
+}  // namespace odomcalib::calib::estimation::gyro_fit_test

@@ -1,6 +1,6 @@
-// What a gyro adds to a fit, and what is wrong with it where it cannot be believed. Its scale, its bias and
-// its clock are its own and are found beside the robot's lengths: it tells how the wheels turned the robot
-// where the lidar saw too little, and how much of an error is slip.
+// Contribution of a gyro to a fit, and its fault where it cannot be believed. Its scale, its bias and its
+// clock are its own and are found beside the robot's lengths: it shows how the wheels turned the robot where
+// the lidar saw too little, and how much of an error is slip.
 #pragma once
 
 #include <Eigen/Core>
@@ -24,7 +24,7 @@ struct GyroFinding {
   std::size_t used = 0;  ///< intervals in which it was held against wheels and lidar; 0 without a gyro
 };
 
-struct GyroWitness {
+struct GyroFit {
   std::vector<GyroFinding> gyros;  ///< one per recording
   Eigen::VectorXd parameters;      ///< of the fit, and what the gyros add to them
   Eigen::MatrixXd covariance;
@@ -32,7 +32,7 @@ struct GyroWitness {
 
 /// @param fit of these data and effects
 /// @param recordings one for each of the data
-GyroWitness weigh_gyros(std::span<const measurement::FitData> data, const vehicle::EffectList& effects,
-                        const FitResult& fit, std::span<const Recording> recordings);
+GyroFit fit_gyros(std::span<const measurement::FitData> data, const vehicle::EffectList& effects,
+                  const FitResult& fit, std::span<const Recording> recordings);
 
 }  // namespace odomcalib::calib::estimation

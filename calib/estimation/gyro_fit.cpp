@@ -1,4 +1,4 @@
-#include "calib/estimation/gyro_witness.hpp"
+#include "calib/estimation/gyro_fit.hpp"
 
 #include <Eigen/Dense>
 #include <algorithm>
@@ -190,7 +190,7 @@ bool is_about(double scale, double expected) {
   return std::abs(scale / expected - 1.0) < settings::kGyroPlain * settings::kGyroScale;
 }
 
-/// What is wrong with a gyro that reads this.
+/// Fault of a gyro that reads this.
 std::optional<std::string> fault_of(const Line& line) {
   if (line.share < settings::kLeastGyroShare)
     return "the gyro is left out: it does not follow the turns of the robot; is it mounted with its axis "
@@ -348,7 +348,7 @@ bool turns_enough(const Turns& turns, const std::vector<Row>& rows) {
   return rows.size() >= settings::kFewestGyroTurns && sum > settings::kLeastGyroTurn_rad;
 }
 
-/// What one gyro says; `change` and `covariance` become what they are with it, unless it is at fault.
+/// Finding of one gyro; `change` and `covariance` become what they are with it, unless it is at fault.
 GyroFinding weigh(const Turns& turns, const TurnRead& gyro, Eigen::VectorXd& change,
                   Eigen::MatrixXd& covariance) {
   GyroFinding finding;
@@ -382,9 +382,9 @@ GyroFinding weigh(const Turns& turns, const TurnRead& gyro, Eigen::VectorXd& cha
 
 }  // namespace
 
-GyroWitness weigh_gyros(std::span<const measurement::FitData> data, const vehicle::EffectList& effects,
-                        const FitResult& fit, std::span<const Recording> recordings) {
-  GyroWitness witness{std::vector<GyroFinding>(data.size()), fit.parameters, fit.covariance};
+GyroFit fit_gyros(std::span<const measurement::FitData> data, const vehicle::EffectList& effects,
+                  const FitResult& fit, std::span<const Recording> recordings) {
+  GyroFit witness{std::vector<GyroFinding>(data.size()), fit.parameters, fit.covariance};
   Eigen::VectorXd change = Eigen::VectorXd::Zero(fit.parameters.size());
   for (std::size_t k = 0; k < data.size() && k < recordings.size(); ++k)
     if (!recordings[k].gyro.empty())
