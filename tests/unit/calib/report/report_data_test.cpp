@@ -349,6 +349,10 @@ TEST(ReportData, path_of_the_reference_goes_over_its_gaps) {
   ASSERT_FALSE(pairs[1].follows_previous) << "the first gap is behind the first pair";
   const ReportData data = report_of(recording);
   ASSERT_EQ(data.paths.size(), 3U);
+  for (const double without_a_part : data.left_out.at(0).second)
+    EXPECT_NEAR(without_a_part, 2.0 * test_support::kLeftRadius, 5e-4);
+  for (const double without_a_part : data.left_out.at(1).second)
+    EXPECT_NEAR(without_a_part, 2.0 * test_support::kRightRadius, 5e-4);
   const auto &calibrated = data.paths[1].points.back(), &reference = data.paths[2].points.back();
   EXPECT_LT(std::hypot(calibrated[0] - reference[0], calibrated[1] - reference[1]), 0.25);
 }
@@ -364,7 +368,10 @@ TEST(ReportData, counts_what_is_trusted_just_enough) {
       found.model.fit.weights[k] = weight;
       found.model.fit.residuals(static_cast<Eigen::Index>(k), 0) = 1.0;
     }
-    return make_report_data(fit.dataset, found, std::nullopt).axes[0].std;
+    const ReportData data = make_report_data(fit.dataset, found, std::nullopt);
+    EXPECT_EQ(data.series.size(), fit.dataset.data.front().pairs.size())
+        << "few enough to be shown one by one";
+    return data.axes[0].std;
   };
   EXPECT_GT(std_with(1.01 * selection::settings::kTrustedWeight), 0.1);
   EXPECT_LT(std_with(0.99 * selection::settings::kTrustedWeight), 0.01);
