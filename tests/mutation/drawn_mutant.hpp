@@ -49,6 +49,9 @@ inline int chosen() {
   return number;
 }
 
+/// Both are looked for at the start: a test may leave its process without files.
+inline const bool started = (reached(), chosen(), true);
+
 }  // namespace odomcalib_drawn
 
 /// Whether the mutant of this number is the one of the environment (ODOMCALIB_MUTANT).

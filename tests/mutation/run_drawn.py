@@ -41,6 +41,16 @@ PROGRAMS = [
 REAL_TIME = ["integration_processes"]
 
 
+RUNNING = set()
+
+
+def end(*_):
+    """At once, with all tests that run: what they would find is not known, and runs again."""
+    for process in list(RUNNING):
+        os.killpg(process.pid, 9)
+    os._exit(1)
+
+
 def tests_of(program):
     lines = subprocess.run([program, "--gtest_list_tests"], capture_output=True, text=True, check=True, cwd=ROOT).stdout
     suite, found = "", []
@@ -63,11 +73,13 @@ def run_tests(tree, program, names, number, longest, reached=None):
         process = subprocess.Popen([program, "--gtest_fail_fast", "--gtest_color=no", "--gtest_filter=" + ":".join(names)],
                                    stdout=output, stderr=subprocess.DEVNULL, stdin=subprocess.DEVNULL, cwd=tree,
                                    env=environment, start_new_session=True)
+        RUNNING.add(process)
         try:
             status = process.wait(longest)
         except subprocess.TimeoutExpired:
             status = "late"
-        finally:  # also when the campaign is interrupted
+        finally:
+            RUNNING.discard(process)
             if process.poll() is None:
                 os.killpg(process.pid, 9)
                 process.wait()
@@ -83,7 +95,8 @@ def run_tests(tree, program, names, number, longest, reached=None):
 
 
 class Campaign:
-    def __init__(self, tree, build):
+    def __init__(self, tree, build, longest=float("inf")):
+        self.longest = longest  # s of a test that is run for a mutant
         self.tree, self.bin, self.file = tree, build / "bin", build / "drawn.json"
         drawn = json.loads((tree / "drawn.json").read_text(encoding="utf-8"))
         self.seed, self.mutants = drawn["seed"], drawn["mutants"]
@@ -120,7 +133,7 @@ class Campaign:
         seen = 0
         for program in PROGRAMS + REAL_TIME:
             own = {name: one["took"] for name, one in self.state["reach"].get(program, {}).items()
-                   if number in one["mutants"] and not one["failed"]}
+                   if number in one["mutants"] and not one["failed"] and one["took"] <= self.longest}
             if not own:
                 continue
             seen += len(own)
@@ -211,9 +224,11 @@ def main():
     parser.add_argument("--again", action="store_true", help="those that survived too")
     parser.add_argument("what", choices=["reach", "run", "table"])
     parser.add_argument("which", nargs="*", help="programs or numbers of mutants")
+    parser.add_argument("--longest", type=float, default=float("inf"), metavar="S", help="no tests that take longer")
     asked = parser.parse_args()
-    signal.signal(signal.SIGTERM, lambda *_: sys.exit(1))
-    campaign = Campaign(asked.tree.resolve(), asked.build.resolve())
+    signal.signal(signal.SIGTERM, end)
+    signal.signal(signal.SIGINT, end)
+    campaign = Campaign(asked.tree.resolve(), asked.build.resolve(), asked.longest)
     if asked.what == "reach":
         campaign.reach(asked.which or PROGRAMS, asked.jobs)
     elif asked.what == "run":

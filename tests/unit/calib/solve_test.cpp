@@ -117,6 +117,7 @@ TEST(Solve, mines_rover_agrees_with_the_reference_fit_including_the_delay) {
   expect_agreement(quantity(result.parameters, "track_width"), 0.2968, 0.002, "track width");
   ASSERT_EQ(result.effects.size(), 1U);
   expect_agreement(quantity(result.effects[0].parameters, "offset"), 0.1532, 0.0008, "delay");
+  EXPECT_FALSE(result.effects[0].aliases.empty()) << "an encoder that lags looks the same";
 }
 
 TEST(Solve, azos_wheelchair_agrees_with_the_reference_fit_including_the_delay) {

@@ -56,6 +56,12 @@ const std::vector<Mistake> kMistakes = {
      "the times of the ticks look like milliseconds", "seconds"},
     {"scans_in_milliseconds", [](Recording& r) { stretch_times(r.scans, 1e3); }, ErrorCode::format,
      "the times of the scans look like milliseconds", "seconds"},
+    {"a_sample_every_25_minutes",
+     [](Recording& r) {
+       stretch_times(r.ticks, 75e3);
+       stretch_times(r.scans, 15e3);
+     },
+     ErrorCode::format, "come every 1500 s only", "at least every 2 s"},
     {"clocks_apart",
      [](Recording& r) {
        for (Scan& scan : r.scans) scan.t += 1.7e9;
@@ -117,6 +123,12 @@ TEST(RecordingCheckPasses, what_is_unusual_but_sound) {
   stretch_times(slow.ticks, 50.0);
   stretch_times(slow.scans, 10.0);
   EXPECT_FALSE(check_recordings({&slow, 1})) << "one sample a second";
+  stretch_times(slow.ticks, 1.98);
+  stretch_times(slow.scans, 1.98);
+  EXPECT_FALSE(check_recordings({&slow, 1})) << "one in hardly two seconds";
+  stretch_times(slow.ticks, 1.02);
+  stretch_times(slow.scans, 1.02);
+  EXPECT_TRUE(check_recordings({&slow, 1})) << "one in a little more";
   Recording crawling = sound();
   for (TickSample& tick : crawling.ticks) tick.left /= 1000;
   EXPECT_FALSE(check_recordings({&crawling, 1})) << "three counts";

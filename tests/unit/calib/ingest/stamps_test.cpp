@@ -58,6 +58,17 @@ TEST(EvenStamps, find_the_pace_under_jitter) {
   EXPECT_TRUE(std::is_sorted(even->t.begin(), even->t.end()));
 }
 
+TEST(EvenStamps, are_in_order_from_the_first_on) {
+  auto given = late(evenly(2000), 3e-3);
+  given[0] += 3.0 * kPeriod;
+  given[1] = given[2] = given[3] = given[0];
+  std::sort(given.begin(), given.end());
+  const auto even = even_stamps(given);
+  ASSERT_TRUE(even);
+  EXPECT_EQ(even->t.size(), given.size());
+  EXPECT_TRUE(std::is_sorted(even->t.begin(), even->t.end())) << even->t[0] << " " << even->t[1];
+}
+
 TEST(EvenStamps, keep_lost_samples_and_pauses) {
   std::vector<double> truth;
   std::mt19937 engine(selection::kSeed);

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "calib/report/settings.hpp"
+#include "calib/report/verdict_rules.hpp"
 
 namespace odomcalib::calib::report::gate_test {
 namespace {
@@ -248,6 +249,33 @@ TEST(Gate, says_of_lengths_by_hardly_any_match_only_that) {
   ASSERT_EQ(gate.reasons.size(), 1U);
   EXPECT_NE(gate.reasons[0].find("only 5 of 125 pairs"), std::string::npos) << gate.reasons[0];
   EXPECT_NE(gate.reasons[0].find("in 3 the wheels turned"), std::string::npos) << gate.reasons[0];
+  EXPECT_NE(gate.reasons[0].find(", with 24 of 361 readings a scan"), std::string::npos) << gate.reasons[0];
+}
+
+TEST(Gate, holds_each_length_to_its_own_nominal_value_where_there_is_one) {
+  Calibration calibration = sound();
+  calibration.robot.left_wheel_diameter = calibration.parameters[0].second.value = 0.12;
+  EXPECT_EQ(judge(calibration, kFirm).verdict, Verdict::accepted);
+  calibration.robot.track_width = 0.0;
+  EXPECT_EQ(judge(calibration, kFirm).verdict, Verdict::accepted) << "not known";
+}
+
+TEST(Gate, names_a_common_factor_once_and_by_enough_motions_only) {
+  Calibration calibration = sound();
+  for (auto& [name, quantity] : calibration.parameters)
+    if (!name.starts_with("lidar_")) quantity.value *= 0.5;
+  const GateResult firm = judge(calibration, kFirm);
+  ASSERT_EQ(firm.reasons.size(), 1U) << firm.reasons[1];
+  Footing few{true, 19, 0, {}};
+  few.pairs = 19;
+  EXPECT_NE(judge(calibration, few).reasons, firm.reasons);
+}
+
+TEST(PoorMatches, are_told_where_few_of_those_tried_are_left) {
+  EXPECT_FALSE(poor_matches({true, 399, 1, {}}));
+  EXPECT_FALSE(poor_matches({true, 400, 0, {}}));
+  EXPECT_FALSE(poor_matches({true, 0, 0, {}})) << "nothing was tried";
+  EXPECT_TRUE(poor_matches({true, 9, 91, {}}));
 }
 
 TEST(Gate, warns_of_a_residual_that_noise_does_not_explain) {

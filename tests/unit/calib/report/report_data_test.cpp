@@ -10,6 +10,7 @@
 #include "calib/report/report.hpp"
 #include "calib/selection/drive_error.hpp"
 #include "calib/selection/residual_trace.hpp"
+#include "calib/selection/settings.hpp"
 #include "calib/terms/catalogue.hpp"
 #include "calib/vehicle/step_context.hpp"
 #include "tests/unit/calib/driven_fit.hpp"
@@ -335,6 +336,45 @@ TEST(SamplePairs, S0_08_hold_both_motions_of_the_base_over_the_same_time) {
     EXPECT_NEAR(sample.odometry[1], sample.reference[1], 0.02);
     EXPECT_NEAR(sample.odometry[2], sample.reference[2], 0.05);
   }
+}
+
+// Where the reference was away, odometry goes on from where it was last seen.
+TEST(ReportData, path_of_the_reference_goes_over_its_gaps) {
+  Recording recording = test_support::driven_recording({});
+  const double first = test_support::rough_dataset({&recording, 1}).data.front().pairs.front().interval.end;
+  std::erase_if(recording.poses, [&](const PoseSample& pose) {
+    return (pose.t > first + 0.01 && pose.t < first + 12.0) || (pose.t > 60.0 && pose.t < 72.0);
+  });
+  const auto& pairs = test_support::rough_dataset({&recording, 1}).data.front().pairs;
+  ASSERT_FALSE(pairs[1].follows_previous) << "the first gap is behind the first pair";
+  const ReportData data = report_of(recording);
+  ASSERT_EQ(data.paths.size(), 3U);
+  for (const double without_a_part : data.left_out.at(0).second)
+    EXPECT_NEAR(without_a_part, 2.0 * test_support::kLeftRadius, 5e-4);
+  for (const double without_a_part : data.left_out.at(1).second)
+    EXPECT_NEAR(without_a_part, 2.0 * test_support::kRightRadius, 5e-4);
+  const auto &calibrated = data.paths[1].points.back(), &reference = data.paths[2].points.back();
+  EXPECT_LT(std::hypot(calibrated[0] - reference[0], calibrated[1] - reference[1]), 0.25);
+}
+
+TEST(ReportData, counts_what_is_trusted_just_enough) {
+  const Recording recording = test_support::driven_recording({});
+  const estimation::Fit fit = test_support::settled_fit({&recording, 1});
+  ASSERT_FALSE(fit.failure);
+  selection::SearchResult found;
+  found.model = {fit.model.effects, fit.result};
+  const auto std_with = [&](double weight) {
+    for (std::size_t k = 0; k < 10; ++k) {
+      found.model.fit.weights[k] = weight;
+      found.model.fit.residuals(static_cast<Eigen::Index>(k), 0) = 1.0;
+    }
+    const ReportData data = make_report_data(fit.dataset, found, std::nullopt);
+    EXPECT_EQ(data.series.size(), fit.dataset.data.front().pairs.size())
+        << "few enough to be shown one by one";
+    return data.axes[0].std;
+  };
+  EXPECT_GT(std_with(1.01 * selection::settings::kTrustedWeight), 0.1);
+  EXPECT_LT(std_with(0.99 * selection::settings::kTrustedWeight), 0.01);
 }
 
 TEST(ClassicalMethods, S3_11_rounds_and_shares_of_the_closed_form_are_those_asked_for) {

@@ -1,0 +1,104 @@
+// What is said of recordings that do not agree on one robot, by what and by how much.
+#include "calib/report/one_robot.hpp"
+
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "calib/vehicle/drive_model.hpp"
+
+namespace odomcalib::calib::report::one_robot_test {
+namespace {
+
+using Json = nlohmann::json;
+
+std::vector<Recording> named_recordings() {
+  std::vector<Recording> all(2);
+  all[0].name = "a.jsonl";
+  all[1].name = "b.jsonl";
+  return all;
+}
+
+/// Two recordings of a robot with wheels of 0.15 m, of which the second differs in one parameter.
+selection::Homogeneity that_differ(Eigen::Index parameter, double difference, double sigmas) {
+  selection::OwnEstimate own{Eigen::VectorXd(6), Eigen::MatrixXd::Identity(6, 6) * 1e-8, 100.0};
+  own.value << 0.075, 0.075, 0.4, 0.1, 0.0, 0.0;
+  selection::Homogeneity found;
+  found.own = {own, own};
+  found.sigmas = found.differences = Eigen::MatrixXd::Zero(2, 6);
+  found.sigmas(1, parameter) = sigmas;
+  found.differences(1, parameter) = difference;
+  found.p_value = 1e-6;
+  found.recording = 1;
+  found.parameter = parameter;
+  return found;
+}
+
+std::string said(Eigen::Index parameter, double difference) {
+  const auto apart = recordings_apart(that_differ(parameter, difference, 10.0), named_recordings());
+  return apart ? apart->reason : "";
+}
+
+TEST(RecordingsApart, are_told_in_the_unit_of_what_differs) {
+  using vehicle::kMountX, vehicle::kMountYaw, vehicle::kTrackWidth;
+  EXPECT_NE(said(0, 7.5e-4).find("is 1 % (1.5 mm) larger"), std::string::npos) << said(0, 7.5e-4);
+  EXPECT_NE(said(kTrackWidth, -4e-3).find("is 1 % (4 mm) smaller"), std::string::npos)
+      << said(kTrackWidth, -4e-3);
+  EXPECT_NE(said(kMountX, 3e-3).find("is 3 mm larger"), std::string::npos) << said(kMountX, 3e-3);
+  EXPECT_NE(said(kMountYaw, 0.0174533).find("is 1 degrees larger"), std::string::npos)
+      << said(kMountYaw, 0.0174533);
+}
+
+TEST(RecordingsApart, beyond_a_bound_of_each_kind_are_refused) {
+  struct Case {
+    Eigen::Index parameter;
+    double bound;
+  };
+  for (const Case& one : {Case{vehicle::kMountX, 0.01}, Case{vehicle::kMountYaw, 0.02}})
+    for (const double sign : {-1.0, 1.0}) {
+      const auto near =
+          recordings_apart(that_differ(one.parameter, 0.99 * sign * one.bound, 10.0), named_recordings());
+      const auto far =
+          recordings_apart(that_differ(one.parameter, 1.01 * sign * one.bound, 10.0), named_recordings());
+      const auto chance =
+          recordings_apart(that_differ(one.parameter, 1.01 * sign * one.bound, 3.9), named_recordings());
+      ASSERT_TRUE(near && far && chance);
+      EXPECT_FALSE(near->refuses) << one.parameter;
+      EXPECT_TRUE(far->refuses) << one.parameter;
+      EXPECT_FALSE(chance->refuses) << one.parameter;
+    }
+}
+
+TEST(DifferentRobots, are_those_that_say_so) {
+  auto all = named_recordings();
+  EXPECT_FALSE(different_robots(all));
+  all[1].robot.robot_id = "r-2";
+  EXPECT_FALSE(different_robots(all)) << "the other does not say";
+  all[0].robot.robot_id = "r-2";
+  EXPECT_FALSE(different_robots(all));
+  all[0].robot.robot_id = "r-1";
+  ASSERT_TRUE(different_robots(all));
+  EXPECT_NE(different_robots(all)->what.find("is of robot \"r-2\", but a.jsonl of \"r-1\""),
+            std::string::npos)
+      << different_robots(all)->what;
+}
+
+TEST(StoredHomogeneity, has_what_each_recording_determines) {
+  auto found = that_differ(0, 7.5e-4, 10.0);
+  found.own[1]->covariance(5, 5) = 0.0;
+  Calibration calibration;
+  store_homogeneity(found, named_recordings(), calibration);
+  const Json all = Json::parse(calibration.extensions.at("recordings"));
+  EXPECT_TRUE(all[0]["parameters"].contains("lidar_yaw"));
+  EXPECT_FALSE(all[1]["parameters"].contains("lidar_yaw")) << "it was fixed";
+  EXPECT_NEAR(all[1]["parameters"]["left_wheel_diameter"]["value"], 0.15, 1e-12);
+  EXPECT_NEAR(all[1]["parameters"]["left_wheel_diameter"]["std"], 2e-4, 1e-12);
+  EXPECT_NEAR(all[1]["parameters"]["track_width"]["std"], 1e-4, 1e-12);
+  EXPECT_EQ(all[1]["deviation"]["left_wheel_diameter"], 10.0);
+  EXPECT_EQ(Json::parse(calibration.extensions.at("homogeneity"))["worst"]["recording"], "b.jsonl");
+}
+
+}  // namespace
+}  // namespace odomcalib::calib::report::one_robot_test
