@@ -5,6 +5,7 @@
 
 #include "calib/math/median.hpp"
 #include "calib/report/report.hpp"
+#include "calib/report/scan_overlay.hpp"
 #include "calib/report/settings.hpp"
 #include "calib/selection/drive_error.hpp"
 #include "calib/selection/folds.hpp"
@@ -196,6 +197,7 @@ ReportData make_report_data(const measurement::Dataset& dataset, const selection
   data.traces = selection::residual_traces(dataset.data, effects, fit, fixed, found.nuisance);
   data.detectable = found.detectable;
   data.paths = paths_of(dataset, effects, fit);
+  data.scans = scan_overlay(dataset, effects, fit, fixed);
   data.axes = {axis_of(fit, 0, "x", "m"), axis_of(fit, 1, "y", "m"), axis_of(fit, 2, "yaw", "rad")};
   add_noise(dataset, fit, data.axes);
   data.series = series_of(dataset, fit);

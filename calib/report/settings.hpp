@@ -113,6 +113,8 @@ inline constexpr double kLengthApart = kWarnRelativeDeviation, kMountApart_m = 0
 
 /// Poses of a path, and pairs. Chosen.
 inline constexpr std::size_t kMostPathPoints = 600, kMostSamples = 300;
+/// Scans that are laid on each other, and beams of each. Chosen: what an eye can tell apart.
+inline constexpr std::size_t kOverlaidScans = 8, kOverlaidBeams = 150;
 /// Bins of a histogram of residuals, and deviations at which it ends. Chosen.
 inline constexpr std::size_t kHistogramBins = 20;
 inline constexpr double kHistogramEnd = 5.0;

@@ -13,6 +13,7 @@
 
 #include "calib/odometry/correction.hpp"
 #include "daemon/cli/display.hpp"
+#include "daemon/cli/export_configurations.hpp"
 #include "daemon/cli/left_out_lines.hpp"
 #include "daemon/cli/plain_words.hpp"
 #include "daemon/cli/report_sections.hpp"
@@ -221,6 +222,14 @@ bool is_from_elsewhere(const Calibration& calibration) {
                      [](const DataUse& data) { return !data.choices.empty(); });
 }
 
+/// As it names the types of its messages.
+bool runs_ros2(const Calibration& calibration) {
+  const auto is_of_ros2 = [](const std::string& choice) { return choice.find("/msg/") != std::string::npos; };
+  return std::any_of(calibration.data.begin(), calibration.data.end(), [&](const DataUse& data) {
+    return std::any_of(data.choices.begin(), data.choices.end(), is_of_ros2);
+  });
+}
+
 std::string next_step(const Calibration& calibration) {
   if (calibration.verdict == Verdict::accepted)
     return is_from_elsewhere(calibration)
@@ -307,6 +316,9 @@ Section gain_section(const Calibration& calibration) {
 
 Section verdict_section(const Calibration& calibration) {
   Section section{"", calibration.reasons, {}};
+  if (const std::string lost = lost_without_effects(calibration, false);
+      calibration.verdict != Verdict::refused && runs_ros2(calibration) && !lost.empty())
+    section.lines.push_back("controllers of ROS 2 hold lengths alone; " + lost);
   section.lines.push_back(next_step(calibration));
   return section;
 }

@@ -185,17 +185,6 @@ std::string errors_text(const std::vector<DriveError>& errors, std::optional<Bou
   return text;
 }
 
-/// Error of odometry without its effects, and the means to apply them.
-std::string remaining_error(const Calibration& calibration, bool is_step) {
-  const auto errors = report_data_of(calibration).drive_errors;
-  const std::string without = errors_text(errors, &DriveError::geometry),
-                    with = errors_text(errors, &DriveError::after);
-  const std::string remedy = is_step ? "libodomcalib applies them"
-                                     : "libodomcalib applies them, and so do the exports c_header and python";
-  if (without.empty() || with.empty()) return "without these effects odometry is worse: " + remedy;
-  return "without these effects odometry errs by " + without + ", with them by " + with + ": " + remedy;
-}
-
 /// Advice where the calibration does not know the counts of a turn; null: the export has no place for them.
 const char* unknown_counts(const std::string& what) {
   if (what == "ros_arduino")
@@ -236,19 +225,32 @@ bool is_configuration(const std::string& what) {
   return std::find(configurations().begin(), configurations().end(), what) != configurations().end();
 }
 
+std::string lost_without_effects(const Calibration& calibration, bool is_step) {
+  const auto placements = calib::odometry::effect_placements(calibration);
+  const bool loses = std::any_of(placements.begin(), placements.end(), [&](const auto& placement) {
+    return placement.place == calib::odometry::Place::odometry && !(is_step && is_in_step(placement.effect));
+  });
+  if (!loses) return "";
+  const auto errors = report_data_of(calibration).drive_errors;
+  const std::string without = errors_text(errors, &DriveError::geometry),
+                    with = errors_text(errors, &DriveError::after);
+  const std::string remedy = is_step ? "libodomcalib applies them"
+                                     : "libodomcalib applies them, and so do the exports c_header and python";
+  if (without.empty() || with.empty()) return "without these effects odometry is worse: " + remedy;
+  return "without these effects odometry errs by " + without + ", with them by " + with + ": " + remedy;
+}
+
 std::vector<std::string> not_held(const Calibration& calibration, const std::string& what) {
   std::vector<std::string> sentences;
   // How far odometry errs is no odometry.
   if (what == "amcl" || what == "robot_localization" || what == "slam_toolbox") return sentences;
   const bool is_step = what == "c_header" || what == "python";
-  bool lacks_effects = false;
   for (const auto& placement : calib::odometry::effect_placements(calibration)) {
     using calib::odometry::Place;
     // Effects of the place or the day are nobody's to hold; a lidar's joint has no wheels.
     if (placement.place == Place::nowhere || (what == "urdf" && placement.place == Place::odometry)) continue;
     // Odometry as source has what moves the base, and nothing of the lidar.
     if (is_step && (placement.place == Place::reference || is_in_step(placement.effect))) continue;
-    lacks_effects = lacks_effects || placement.place == Place::odometry;
     const Quantity& q = placement.quantity;
     const std::string name =
         placement.effect + (placement.parameter.empty() ? "" : "." + placement.parameter);
@@ -263,7 +265,9 @@ std::vector<std::string> not_held(const Calibration& calibration, const std::str
                     100.0 * (*left / *right - 1.0)));
   if (const char* counts = counts_a_turn(calibration) ? nullptr : unknown_counts(what))
     sentences.emplace_back(counts);
-  if (lacks_effects) sentences.push_back(remaining_error(calibration, is_step));
+  if (const std::string lost = what == "urdf" ? "" : lost_without_effects(calibration, is_step);
+      !lost.empty())
+    sentences.push_back(lost);
   return sentences;
 }
 

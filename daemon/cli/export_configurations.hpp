@@ -19,6 +19,11 @@ const std::vector<std::string>& configurations();
 /// has no room for: a sentence each. The text of the format has them as comments.
 std::vector<std::string> not_held(const Calibration& calibration, const std::string& what);
 
+/// What odometry errs by without its effects (degrees a turn, mm a metre, where the recording shows them),
+/// and what applies them: a sentence. Empty where it has none.
+/// @param is_step of odometry as source, which has most of them
+std::string lost_without_effects(const Calibration& calibration, bool is_step);
+
 /// Begins with where the values are from, as a comment.
 /// Errors: usage (unknown name), format (the file does not hold it), refused.
 /// @param where the calibration is from, for errors

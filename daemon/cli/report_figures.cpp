@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "daemon/cli/display.hpp"
 
@@ -56,6 +57,30 @@ Figure figure_of_paths(const std::vector<PathTrace>& paths) {
   // Broad and below the others: what agrees with it would hide it, or be hidden.
   std::stable_partition(figure.curves.begin(), figure.curves.end(),
                         [](const Curve& curve) { return curve.tone == Tone::reference; });
+  return figure;
+}
+
+Figure figure_of_scans(const std::vector<ScanTrace>& scans) {
+  Figure figure{
+      "Scans laid on each other by odometry alone, on a stretch that the values were not fitted to: the "
+      "better "
+      "odometry is, the thinner are the walls.",
+      "x [m]",
+      "y [m]",
+      true,
+      {}};
+  const auto add = [&](const std::string& name, std::array<double, 3> ScanTrace::*of) {
+    Curve curve{label_of_path(name), Style::dots, tone_of_path(name), {}};
+    for (const ScanTrace& scan : scans) {
+      const auto& [x, y, yaw] = scan.*of;
+      const double c = std::cos(yaw), s = std::sin(yaw);
+      for (const auto& [ahead, left] : scan.points)
+        curve.points.push_back({x + c * ahead - s * left, y + s * ahead + c * left});
+    }
+    figure.curves.push_back(std::move(curve));
+  };
+  add("odometry", &ScanTrace::before);
+  add("calibrated", &ScanTrace::after);
   return figure;
 }
 

@@ -34,7 +34,8 @@ details h2{font-size:1em}details>section{margin-bottom:1.2em}details>section:fir
 @media screen and (min-width:1100px){
 .first td{white-space:nowrap}.first table{font-size:.95em}
 .first{grid-template:"answer gain" auto "values gain" 1fr/minmax(0,1fr) minmax(0,1fr)}
-.fold{columns:2;column-gap:2.6em}.fold>*{break-inside:avoid}.fold.wide{columns:1}}
+.fold{columns:2;column-gap:2.6em}.fold>*{break-inside:avoid}.fold.wide{columns:1}
+.fold.wide figure{display:inline-block;width:48%;margin-right:1.5%;vertical-align:top}}
 @media screen and (max-width:600px){body{margin:.6em auto}header h1{font-size:1.4em}
 .lead{font-size:1.05em;margin:.4em 0}.sizes{gap:.3em 1.2em}.sizes .v{font-size:1.4em}.sizes p{font-size:.92em}}
 @media print{@page{size:A4;margin:13mm}body{font-size:9.5pt}.rest{break-before:page;margin:0}

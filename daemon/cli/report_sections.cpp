@@ -134,6 +134,14 @@ Section path_section(const ReportData& data) {
     const auto& end = path.points.back();
     section.lines.push_back(fmt::format("{}: ends at x {:.3f} m, y {:.3f} m", path.name, end[0], end[1]));
   }
+  if (!data.scans.empty()) {
+    section.lines.push_back(
+        fmt::format("{} scans of 20 s are laid on each other, of the block with the most motion; the values "
+                    "that place them "
+                    "are fitted to the other blocks",
+                    data.scans.size()));
+    section.figures.push_back(figure_of_scans(data.scans));
+  }
   if (!data.paths.empty()) section.figures.push_back(figure_of_paths(data.paths));
   return section;
 }

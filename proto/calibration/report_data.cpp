@@ -79,6 +79,17 @@ Json to_json(const PathTrace& path) {
   return {{"name", path.name}, {"points", points}};
 }
 
+/// Whole millimetres.
+Json to_json(const ScanTrace& scan) {
+  constexpr double kParts = 1000.0;
+  Json points = Json::array();
+  for (const auto& [x, y] : scan.points)
+    points.push_back(row(std::round(x * kParts) / kParts, std::round(y * kParts) / kParts));
+  return {{"before", row(scan.before[0], scan.before[1], scan.before[2])},
+          {"after", row(scan.after[0], scan.after[1], scan.after[2])},
+          {"points", points}};
+}
+
 Json to_json(const ResidualAxis& axis) {
   return {{"name", axis.name},
           {"unit", axis.unit},
@@ -174,6 +185,18 @@ PathTrace path_of(const Json& value) {
   return path;
 }
 
+ScanTrace scan_of(const Json& value) {
+  ScanTrace scan;
+  const auto before = numbers_of(value.at("before"), 3), after = numbers_of(value.at("after"), 3);
+  scan.before = {before[0], before[1], before[2]};
+  scan.after = {after[0], after[1], after[2]};
+  for (const auto& point : value.at("points")) {
+    const auto p = numbers_of(point, 2);
+    scan.points.push_back({p[0], p[1]});
+  }
+  return scan;
+}
+
 ResidualAxis axis_of(const Json& value) {
   return {value.at("name"),
           value.at("unit"),
@@ -203,6 +226,7 @@ void read_detectable(const Json& list, ReportData& data) {
 void read_picture(const Json& picture, ReportData& data) {
   for (const auto& value : picture.value("growth", Json::array())) data.growth.push_back(growth_of(value));
   for (const auto& value : picture.at("paths")) data.paths.push_back(path_of(value));
+  for (const auto& value : picture.value("scans", Json::array())) data.scans.push_back(scan_of(value));
   for (const auto& value : picture.at("traces")) data.traces.push_back(trace_of(value));
   for (const auto& value : picture.at("axes")) data.axes.push_back(axis_of(value));
   for (const auto& value : picture.at("series")) data.series.push_back(sample_of(value));
@@ -234,10 +258,10 @@ void store_report_data(const ReportData& data, Calibration& calibration) {
   }
   calibration.extensions[kErrorsMember] = list(data.drive_errors).dump();
   if (!data.detectable.empty()) calibration.extensions[kDetectableMember] = list(data.detectable).dump();
-  calibration.extensions[kPictureMember] =
-      Json{{"growth", list(data.growth)}, {"paths", list(data.paths)},   {"traces", list(data.traces)},
-           {"axes", list(data.axes)},     {"series", list(data.series)}, {"left_out", left_out}}
-          .dump();
+  calibration.extensions[kPictureMember] = Json{
+      {"growth", list(data.growth)}, {"paths", list(data.paths)}, {"scans", list(data.scans)},
+      {"traces", list(data.traces)}, {"axes", list(data.axes)},   {"series", list(data.series)},
+      {"left_out", left_out}}.dump();
 }
 
 ReportData report_data_of(const Calibration& calibration) {

@@ -70,6 +70,12 @@ struct PathTrace {
   std::vector<std::array<double, 3>> points;  ///< x, y, yaw: m, m, rad, frame of the base at the start
 };
 
+/// One scan, and from where odometry says that it was taken on a stretch that was not fitted.
+struct ScanTrace {
+  std::vector<std::array<double, 2>> points;  ///< m, in the frame of the base
+  std::array<double, 3> before{}, after{};    ///< x, y, yaw of the base since the begin: m, m, rad
+};
+
 /// Residual of the final model in one axis of the sensor.
 struct ResidualAxis {
   std::string name, unit;
@@ -95,6 +101,7 @@ struct ReportData {
   std::vector<ResidualTrace> traces;
   std::vector<Detectable> detectable;
   std::vector<PathTrace> paths;
+  std::vector<ScanTrace> scans;
   std::vector<ResidualAxis> axes;
   std::vector<ResidualSample> series;
   /// Each parameter fitted without one fifth of the data, five times.

@@ -63,6 +63,36 @@ IN_SIGHT = """() => [...document.querySelectorAll("h1,header p,.lead,.sizes .v,.
   const box = e.getBoundingClientRect();
   return box.width > 0 && box.top >= 0 && box.bottom <= innerHeight;
 }).map((e) => e.tagName + " " + (e.className.baseVal ?? e.className) + " " + e.textContent)"""
+# What people ask, and what answers it on a desk without scrolling; docs/evidence/report-questions.md says where that stands.
+TEXT_IN_SIGHT = """() => [...document.querySelectorAll("h1,h2,p,td,th,figcaption,figure *")].filter((e) => {
+  const box = e.getBoundingClientRect();
+  return box.width > 0 && box.top >= 0 && box.bottom <= innerHeight;
+}).map((e) => e.textContent.replace(/\\s+/g, " ")).join("\\n")"""
+QUESTIONS = {
+    "Is it good?": r"^ACCEPTED WITH WARNINGS$",
+    "Why not without warnings?": r"^backlash on reversals was found",
+    "What do I do next?": r"^Next: ",
+    "Which robot is it?": r"carrier-17",
+    "Where was it driven?": r"hall 3",
+    "When was it driven?": r"driven 2026-11-29, 10:25 to 10:29 UTC",
+    "What was wrong with a metre?": r"A metre read [\d.]+ mm too (long|short)",
+    "What is a metre off by now?": r"now [\d.]+ mm off",
+    "What was wrong with a turn?": r"a full turn (read|was) [\d.]+ degrees",
+    "What is a turn off by now?": r"now [\d.]+ degrees off",
+    "How far off am I after some metres, before and now?": r"distance driven \[m\]",
+    "Was that judged on the data that was fitted?": r"parts of the recording that the values were not fitted to",
+    "What else was found?": r"play of 3\.4 deg in the left gear",
+    "Who corrects that?": r"odometry with this calibration corrects it",
+    "What does it do to the drive?": r"backlash: residual against reversals",
+    "How large are the wheels?": r"^left wheel diameter$",
+    "How wide is the track?": r"^track width$",
+    "Where does the lidar sit?": r"^lidar yaw$",
+    "How much did the values change?": r"^[+-][\d.]+ %$",
+    "How sure are the values?": r"^repeatable to$",
+    "Are they true against a tape?": r"^true to \(lidar\)$",
+    "Which metre do they hang on?": r"known to \+-1\.15 % \(lidar data sheet\)",
+}
+TABLE = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "docs", "evidence", "report-questions.md")
 UNFOLD = '() => document.querySelectorAll("details").forEach((e) => { e.open = true; })'
 
 
@@ -75,6 +105,19 @@ def faults_in_sight(browser, name):
     seen = browser.evaluate(IN_SIGHT)
     wanted = ["H1", "Next: "] + ([] if name == "refused" else ["P lead A ", "P v", "svg"])
     return ["not in sight without scrolling: " + text for text in wanted if not any(text in one for one in seen)]
+
+
+def unanswered(browser, questions):
+    seen = browser.evaluate(TEXT_IN_SIGHT)
+    return ["not answered without scrolling: " + question for question, answer in questions.items()
+            if not re.search(answer, seen, re.M)]
+
+
+def unlisted():
+    """The table in the documents has these questions and no other."""
+    with open(TABLE, encoding="utf-8") as file:
+        listed = re.findall(r"^\| ([^|]+\?) \|", file.read(), re.M)
+    return ["in one of test and table only: " + question for question in sorted(set(listed) ^ set(QUESTIONS))]
 
 
 def faults_of_layout(browser):
@@ -155,6 +198,17 @@ def with_a_finding(calibration):
     return body
 
 
+def with_everything(finding):
+    """The same of a robot with a usual name, a place and a date, that drove straight on too."""
+    body = {**finding, "reasons": finding["reasons"][:1], "settings": {**finding["settings"], "place": "hall 3"},
+            "robot": {**finding["robot"], "robot_id": "carrier-17"},
+            "driven": {"begin": "2026-11-29T10:25:00Z", "end": "2026-11-29T10:29:00Z"}}
+    figures = {name: {"value": value, "interval": [0.9 * value, 1.1 * value]} for name, value in (("before", 0.022), ("after", 0.0004))}
+    body["drive_errors"] = [{"name": "straight_metre_length", "unit": "m", "stretches": 12, "geometry": None, "noise_floor": 0.0003,
+                             **figures}] + body["drive_errors"]
+    return body
+
+
 def write_reports(program, sample, folder):
     """Names and addresses of pages, one for each verdict."""
     def ctl(*words):
@@ -165,7 +219,8 @@ def write_reports(program, sample, folder):
     refused = {**good, "verdict": "refused", "reasons": ["the motion does not separate the parameters"], "picture": None,
                "drive_errors": [], "detectable": []}
     pages = []
-    for name, body in (("good", good), ("finding", with_a_finding(good)), ("refused", refused)):
+    finding = with_a_finding(good)
+    for name, body in (("good", good), ("finding", finding), ("everything", with_everything(finding)), ("refused", refused)):
         with open(os.path.join(folder, name + ".json"), "w", encoding="utf-8") as file:
             json.dump(body, file)
         if ctl("report", name + ".json", "--html", name + ".html") != 0:
@@ -202,14 +257,16 @@ def plant(folder):
 def blind_spots(browser, folder):
     """What of the planted faults is not seen."""
     url = plant(folder)
-    seen = "\n".join(faults_on_screen(browser, url, 400, 800, False) + faults_in_sight(browser, "planted"))
+    seen = "\n".join(faults_on_screen(browser, url, 400, 800, False) + faults_in_sight(browser, "planted")
+                     + unanswered(browser, QUESTIONS))
     return ["a planted fault is not seen: " + kind for kind in
             ("px of 400", "cut off: DIV hidden", "cut off: TD wide", "letters of a drawing", "no marks", "pale: P pale",
-             "asks for http://localhost", "script error", "not in sight without scrolling: H1") if kind not in seen]
+             "asks for http://localhost", "script error", "not in sight without scrolling: H1",
+             "not answered without scrolling: Is it good?") if kind not in seen]
 
 
 def main(program, sample):
-    faults = []
+    faults = unlisted()
     with tempfile.TemporaryDirectory() as folder, Browser() as browser:
         faults += blind_spots(browser, folder)
         for name, url in write_reports(os.path.abspath(program), os.path.abspath(sample), folder):
@@ -219,6 +276,8 @@ def main(program, sample):
                     faults += [where + fault for fault in faults_on_screen(browser, url, width, height, dark)]
                 browser.open(url, width, height)
                 faults += ["%s, %s: %s" % (name, screen, fault) for fault in faults_in_sight(browser, name)]
+                if (name, screen) == ("everything", "desk"):
+                    faults += unanswered(browser, QUESTIONS)
             faults += [name + ", paper: " + fault for fault in faults_on_paper(browser, url, folder)]
         for name, url in write_sheets(os.path.abspath(program), folder):
             faults += [name + ": " + fault for fault in faults_of_sheet(browser, url, folder)]

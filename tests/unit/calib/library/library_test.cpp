@@ -4,12 +4,16 @@
 #include <gtest/gtest.h>
 #include <odomcalib/odometry.h>
 
+#include <algorithm>
 #include <cmath>
+#include <filesystem>
+#include <iostream>
 #include <limits>
 #include <map>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <numbers>
+#include <regex>
 
 #include "calib/odometry/correction.hpp"
 #include "calib/odometry/predict.hpp"
@@ -169,6 +173,37 @@ TEST(Library, poses_are_those_of_the_program_to_the_last_bit_on_real_recordings)
     expect_equal(read.value(), accepted(), name);
     expect_equal(read.value(), with_all_effects(), name);
   }
+}
+
+/// Those that tests/regression/compare solves.
+std::vector<std::filesystem::path> all_real_recordings() {
+  std::vector<std::filesystem::path> files;
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(test_support::shared_data(""))) {
+    const std::string name = entry.path().filename().string();
+    const bool is_recording = name.ends_with(".jsonl.gz") || name.ends_with(".lcmlog.gz");
+    const bool is_part =
+        std::regex_search(name, std::regex(R"(\.(scans|ticks|odom|slam|truth|landmarks)\.)")) ||
+        entry.path().parent_path().filename() == "scanmatch";
+    if (entry.is_regular_file() && is_recording && !is_part) files.push_back(entry.path());
+  }
+  std::sort(files.begin(), files.end());
+  return files;
+}
+
+TEST(Library, poses_are_those_of_the_program_to_the_last_bit_on_every_real_recording) {
+  ODOMCALIB_NEEDS_SHARED("maebot/empty.jsonl.gz");
+  if (!test_support::long_tests()) GTEST_SKIP() << "takes minutes: ./test.sh --long";
+  const RobotDescription robot{0.15, 0.15, 0.4, 4096.0, std::nullopt, "", ""};
+  std::size_t count = 0;
+  for (const std::filesystem::path& file : all_real_recordings()) {
+    auto read = read_recording(file);
+    if (!read.ok()) read = read_recording(file, &robot);
+    if (!read.ok() || read.value().ticks.empty()) continue;
+    ++count;
+    expect_equal(read.value(), with_all_effects(), file.string());
+  }
+  std::cout << count << " recordings\n";
+  EXPECT_GE(count, 30U);
 }
 
 TEST(Library, updates_take_no_memory) {

@@ -266,7 +266,7 @@ TEST(Gate, names_a_common_factor_once_and_by_enough_motions_only) {
     if (!name.starts_with("lidar_")) quantity.value *= 0.5;
   const GateResult firm = judge(calibration, kFirm);
   ASSERT_EQ(firm.reasons.size(), 1U) << firm.reasons[1];
-  Footing few{true, 19, 0, {}};
+  VerdictEvidence few{true, 19, 0, {}};
   few.pairs = 19;
   EXPECT_NE(judge(calibration, few).reasons, firm.reasons);
 }

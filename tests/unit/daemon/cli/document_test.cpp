@@ -12,7 +12,9 @@
 #include "daemon/cli/export_formats.hpp"
 #include "daemon/cli/figure_svg.hpp"
 #include "daemon/cli/parameter_tables.hpp"
+#include "daemon/cli/report_figures.hpp"
 #include "daemon/cli/report_page.hpp"
+#include "daemon/cli/report_sections.hpp"
 #include "daemon/cli/report_sheets.hpp"
 #include "daemon/cli/status_document.hpp"
 #include "proto/calibration/report_data.hpp"
@@ -347,6 +349,65 @@ TEST(Export, to_other_programs_has_their_numbers) {
   EXPECT_THAT(arcos, HasSubstr("TicksMM      * 1.020408\n"));
   EXPECT_THAT(arcos, HasSubstr("RevCount     * 1.045918\n"));
   EXPECT_THAT(arcos, HasSubstr("DriftFactor  + 84\n"));
+}
+
+TEST(Export, of_lengths_alone_says_what_odometry_then_errs_by) {
+  ReportData data;
+  const auto error = [](const char* name, const char* unit, double without, double with) {
+    return DriveError{name, unit, 12, {}, Bounded{without, 0.0, 1.0}, Bounded{with, 0.0, 1.0}, {}};
+  };
+  data.drive_errors = {error("full_turn_heading", "rad", 0.0593, 0.00087),
+                       error("straight_metre_length", "m", 0.0042, 0.0003)};
+  Calibration calibration = for_export();
+  store_report_data(data, calibration);
+  for (const char* what : {"toml", "diff_drive", "ros_arduino", "arcos"}) {
+    const std::string text = exported(calibration, what).value();
+    EXPECT_THAT(text,
+                HasSubstr("without these effects odometry errs by 3.4 degrees a turn and 4.2 mm a metre, "
+                          "with them by 0.05 degrees a turn and 0.3 mm a metre: libodomcalib applies them"))
+        << what;
+  }
+  EXPECT_THAT(exported(calibration, "urdf").value(), Not(HasSubstr("without these effects")));
+  EXPECT_THAT(exported(calibration, "c_header").value(), Not(HasSubstr("without these effects")))
+      << "it has them";
+  calibration.effects.resize(1);
+  EXPECT_THAT(exported(calibration, "diff_drive").value(), Not(HasSubstr("without these effects")));
+}
+
+TEST(Report, says_what_is_lost_where_the_robot_runs_ros2) {
+  const auto lines_of = [](const char* type, bool has_effects, Verdict verdict) {
+    Calibration calibration = for_export();
+    calibration.verdict = verdict;
+    if (!has_effects) calibration.effects.resize(1);  // the clock's alone: odometry has none
+    calibration.data[0].choices = {std::string("scan: /scan (") + type + ", 9 messages)"};
+    return verdict_section(calibration).lines;
+  };
+  const auto told =
+      testing::Contains(HasSubstr("controllers of ROS 2 hold lengths alone; without these effects"));
+  const auto lines = lines_of("sensor_msgs/msg/LaserScan", true, Verdict::accepted);
+  EXPECT_THAT(lines, told);
+  EXPECT_THAT(lines, testing::Contains(HasSubstr("libodomcalib applies them")));
+  EXPECT_THAT(lines.back(), HasSubstr("Next: "));
+  EXPECT_THAT(lines_of("sensor_msgs/LaserScan", true, Verdict::accepted), Not(told));
+  EXPECT_THAT(lines_of("sensor_msgs/msg/LaserScan", false, Verdict::accepted), Not(told));
+  EXPECT_THAT(lines_of("sensor_msgs/msg/LaserScan", true, Verdict::refused), Not(told));
+}
+
+TEST(Report, lays_scans_on_each_other) {
+  ReportData data;
+  data.scans = {{{{2.0, 0.0}, {0.0, 1.0}}, {1.0, 0.0, 0.0}, {1.0, 0.5, 0.5 * M_PI}}};
+  Calibration calibration = for_export();
+  store_report_data(data, calibration);
+  const Figure figure = figure_of_scans(report_data_of(calibration).scans);
+  ASSERT_EQ(figure.curves.size(), 2U);
+  EXPECT_TRUE(figure.equal_scales);
+  EXPECT_EQ(figure.curves[0].tone, Curve::Tone::before);
+  EXPECT_NEAR(figure.curves[0].points[0][0], 3.0, 1e-6);
+  EXPECT_NEAR(figure.curves[1].points[0][0], 1.0, 1e-5);
+  EXPECT_NEAR(figure.curves[1].points[0][1], 2.5, 1e-5);
+  EXPECT_NEAR(figure.curves[1].points[1][0], 0.0, 1e-5);
+  EXPECT_THAT(path_section(report_data_of(calibration)).lines,
+              testing::Contains(HasSubstr("1 scans of 20 s")));
 }
 
 TEST(Export, leaves_out_what_was_not_measured) {
