@@ -1,6 +1,7 @@
 // What the service reports of itself, as `odomcalibctl status`, `check` and `params get` show it.
 #pragma once
 
+#include "daemon/service/parts/robot_parts.hpp"
 #include "daemon/service/tasks/task.hpp"
 
 namespace odomcalib {
