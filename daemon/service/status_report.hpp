@@ -1,6 +1,7 @@
 // Reports of the service on itself, as `odomcalibctl status`, `check` and `params get` show them.
 #pragma once
 
+#include "daemon/service/parts/robot_parts.hpp"
 #include "daemon/service/tasks/task.hpp"
 
 namespace odomcalib {

@@ -7,6 +7,7 @@
 
 #include "daemon/service/parts/drive.hpp"
 #include "daemon/service/parts/write_back.hpp"
+#include "proto/calibration/calibration.hpp"
 
 namespace odomcalib {
 
