@@ -53,7 +53,8 @@ double time_of(const Scan& scan, std::size_t beam) {
   return scan.time_increment.value_or(0.0) * static_cast<double>(beam);
 }
 
-/// What the beams hit, in the frame of the base at the scan's stamp, for a base that moves as this says.
+/// Points that the beams hit, in the frame of the base at the scan's stamp, for a base that moves as this
+/// says.
 std::vector<std::array<double, 2>> points_of(const Scan& scan, const vehicle::Trajectory& moves,
                                              const math::Pose& mount) {
   std::vector<std::array<double, 2>> points;

@@ -8,7 +8,7 @@
 
 namespace odomcalib::calib::report {
 
-/// Of the block of 20 s with the most motion, whose parameters are fitted to the other blocks. Empty where
+/// Scans of the block of 20 s with the most motion; parameters are fitted to the other blocks. Empty where
 /// the reference is no scans, nothing was held out, or nobody stated nominal values.
 std::vector<ScanTrace> scan_overlay(const measurement::Dataset& dataset, const vehicle::EffectList& effects,
                                     const estimation::FitResult& fit, const std::vector<bool>& fixed);

@@ -19,8 +19,8 @@ const std::vector<std::string>& configurations();
 /// has no room for: a sentence each. The text of the format has them as comments.
 std::vector<std::string> not_held(const Calibration& calibration, const std::string& what);
 
-/// What odometry errs by without its effects (degrees a turn, mm a metre, where the recording shows them),
-/// and what applies them: a sentence. Empty where it has none.
+/// Error of odometry without its effects (degrees a turn, mm a metre, where the recording shows them), and
+/// the means to apply them: a sentence. Empty where it has none.
 /// @param is_step of odometry as source, which has most of them
 std::string lost_without_effects(const Calibration& calibration, bool is_step);
 

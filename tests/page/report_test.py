@@ -63,7 +63,7 @@ IN_SIGHT = """() => [...document.querySelectorAll("h1,header p,.lead,.sizes .v,.
   const box = e.getBoundingClientRect();
   return box.width > 0 && box.top >= 0 && box.bottom <= innerHeight;
 }).map((e) => e.tagName + " " + (e.className.baseVal ?? e.className) + " " + e.textContent)"""
-# What people ask, and what answers it on a desk without scrolling; docs/evidence/report-questions.md says where that stands.
+# Questions of people, and the text that answers them on a desk without scrolling; docs/evidence/report-questions.md says where that stands.
 TEXT_IN_SIGHT = """() => [...document.querySelectorAll("h1,h2,p,td,th,figcaption,figure *")].filter((e) => {
   const box = e.getBoundingClientRect();
   return box.width > 0 && box.top >= 0 && box.bottom <= innerHeight;

@@ -1,4 +1,4 @@
-// What is said of recordings that do not agree on one robot, by what and by how much.
+// Messages about recordings that do not agree on one robot: in which quantity, by how much.
 #include "calib/report/one_robot.hpp"
 
 #include <gtest/gtest.h>
