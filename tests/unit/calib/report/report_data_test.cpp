@@ -345,8 +345,8 @@ TEST(ReportData, path_of_the_reference_goes_over_its_gaps) {
   std::erase_if(recording.poses, [&](const PoseSample& pose) {
     return (pose.t > first + 0.01 && pose.t < first + 12.0) || (pose.t > 60.0 && pose.t < 72.0);
   });
-  const auto& pairs = test_support::rough_dataset({&recording, 1}).data.front().pairs;
-  ASSERT_FALSE(pairs[1].follows_previous) << "the first gap is behind the first pair";
+  const measurement::Dataset dataset = test_support::rough_dataset({&recording, 1});
+  ASSERT_FALSE(dataset.data.front().pairs.at(1).follows_previous) << "the first gap is behind the first pair";
   const ReportData data = report_of(recording);
   ASSERT_EQ(data.paths.size(), 3U);
   for (const double without_a_part : data.left_out.at(0).second)
