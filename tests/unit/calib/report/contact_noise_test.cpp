@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <random>
 
 #include "calib/solve.hpp"
@@ -25,6 +26,16 @@ TEST(ContactNoise, is_that_of_errors_that_were_not_fitted) {
   };
   EXPECT_NEAR(noise_of(2e-2) / noise_of(1e-2), 2.0, 0.1);
   EXPECT_LT(noise_of(0.0), 0.1 * noise_of(1e-2));
+}
+
+TEST(ContactNoise, is_none_without_a_trusted_pair) {
+  const Recording recording = test_support::driven_recording({0.1, 0.05, 0.2});
+  const estimation::Fit fit = test_support::settled_fit({&recording, 1});
+  const auto held_out = selection::held_out_errors(fit.dataset.data, {}, fit.result, fit.dataset.fixed());
+  selection::FittedModel model{{}, fit.result};
+  EXPECT_TRUE(contact_noise(fit.dataset, model, held_out));
+  std::fill(model.fit.weights.begin(), model.fit.weights.end(), 0.0);
+  EXPECT_FALSE(contact_noise(fit.dataset, model, held_out));
 }
 
 TEST(ContactNoise, is_not_stated_where_nothing_was_held_out) {

@@ -71,20 +71,6 @@ TEST(RecordingsApart, beyond_a_bound_of_each_kind_are_refused) {
     }
 }
 
-TEST(DifferentRobots, are_those_that_say_so) {
-  auto all = named_recordings();
-  EXPECT_FALSE(different_robots(all));
-  all[1].robot.robot_id = "r-2";
-  EXPECT_FALSE(different_robots(all)) << "the other does not say";
-  all[0].robot.robot_id = "r-2";
-  EXPECT_FALSE(different_robots(all));
-  all[0].robot.robot_id = "r-1";
-  ASSERT_TRUE(different_robots(all));
-  EXPECT_NE(different_robots(all)->what.find("is of robot \"r-2\", but a.jsonl of \"r-1\""),
-            std::string::npos)
-      << different_robots(all)->what;
-}
-
 TEST(StoredHomogeneity, has_what_each_recording_determines) {
   auto found = that_differ(0, 7.5e-4, 10.0);
   found.own[1]->covariance(5, 5) = 0.0;

@@ -428,38 +428,6 @@ TEST(BaseQuantities, what_stays_as_it_is_has_no_deviation) {
     EXPECT_NEAR(list[k].second.std, k == 1 ? 2e-4 : -1.0, 1e-12) << list[k].first;
 }
 
-// Noise from pairs that owe nearly all of their errors to the wheels, over the distance that these rolled.
-TEST(ContactNoise, is_that_of_the_fit_without_what_neighbours_take_back) {
-  const auto world = make_world({}, {}, 12);
-  measurement::Dataset dataset;
-  dataset.data = world->data;
-  estimation::FitResult fit = fitted(*world, {});
-  const wheels::WheelTrack track = drive(420.0);
-  double way = 0.0;
-  for (std::size_t k = 1; k < track.t.size(); ++k)
-    way += 0.5 * kTruth.left_radius * std::abs(track.left[k] - track.left[k - 1]) +
-           0.5 * kTruth.right_radius * std::abs(track.right[k] - track.right[k - 1]);
-  const double pairs = static_cast<double>(dataset.data.front().pairs.size());
-  std::fill(fit.weights.begin(), fit.weights.end(), 1.0);
-  for (const double correlation : {0.0, 0.2, -0.4}) {
-    measurement::NoiseModel noise;
-    noise.process_translation = 0.02;
-    noise.process_rotation = 0.03;
-    noise.correlation = {correlation, correlation, correlation};
-    fit.noise = {noise};
-    const auto found = contact_noise(dataset, fit);
-    ASSERT_TRUE(found);
-    const double lasting = std::min(1.0, 1.0 + 2.0 * correlation);
-    const double turn = lasting * pairs * 9e-4 / way;
-    const double lever = 0.09 * 0.09 + 0.01 * 0.01;
-    EXPECT_NEAR(found->at(2), std::sqrt(turn), 0.02 * std::sqrt(turn)) << correlation;
-    EXPECT_NEAR(found->at(1), std::sqrt(lasting * pairs * 4e-4 / way - 0.5 * lever * turn), 2e-3)
-        << correlation;
-  }
-  std::fill(fit.weights.begin(), fit.weights.end(), 0.0);
-  EXPECT_FALSE(contact_noise(dataset, fit)) << "no trusted pair";
-}
-
 ReportData example() {
   ReportData data;
   data.drive_errors = {{"straight_metre_length", "m", 9, Bounded{0.02, 0.01, 0.03}, std::nullopt,
