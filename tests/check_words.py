@@ -86,8 +86,8 @@ def self_test():
                   "// Whatever was read."):
         assert without_subject([right]) == [], right
     assert without_subject(["// Which of the two,", "// the left or the right?"]) == []
-    assert [name for _, name in old_words('VerdictEvidence f(paper_s, by_papers); // papers\nlog("footing");', {"footing", "papers"})] == \
-        ["VerdictEvidence", "by_papers"]
+    assert [name for _, name in old_words('Footing f(paper_s, by_papers); // papers\nlog("footing");', {"footing", "papers"})] == \
+        ["Footing", "by_papers"]
     print("self-test passed")
     return 0
 

@@ -63,8 +63,7 @@ Figure figure_of_paths(const std::vector<PathTrace>& paths) {
 Figure figure_of_scans(const std::vector<ScanTrace>& scans) {
   Figure figure{
       "Scans laid on each other by odometry alone, on a stretch that the values were not fitted to: the "
-      "better "
-      "odometry is, the thinner are the walls.",
+      "better odometry is, the thinner are the walls.",
       "x [m]",
       "y [m]",
       true,

@@ -76,7 +76,14 @@ Section drive_errors_section(const Calibration& calibration, const ReportData& d
                                     [](const DriveError& e) { return e.geometry.has_value(); });
   for (const DriveError& error : data.drive_errors)
     section.table.rows.push_back(error_row(error, geometry, intervals));
-  if (section.table.rows.empty()) return section;
+  if (section.table.rows.empty()) {
+    // Too short to be fitted in parts and tested in the others; a refused one has said why.
+    if (!calibration.residual.held_out && calibration.verdict != Verdict::refused)
+      section.lines = {
+          "Not stated: of a recording this short nothing can be left out of the fit. Record a minute or "
+          "more."};
+    return section;
+  }
   section.table.head = {"", "", "before", "after", "noise floor", "stretches"};
   if (geometry) section.table.head.insert(section.table.head.begin() + 3, "without effects");
   return section;
