@@ -66,13 +66,16 @@ std::string dumped(const nlohmann::ordered_json& value, int indent) {
   return out;
 }
 
+/// Columns by COLUMNS, else of the terminal, else settings::kTextColumns.
+std::size_t columns_for(int terminal) {
+  std::size_t columns = wanted_columns();
+  if (columns == 0) columns = terminal_columns(terminal);
+  return columns == 0 ? settings::kTextColumns : std::max(columns, settings::kFewestColumns);
+}
+
 /// Whole on one line in a pipe or a file, where programs look for it; within the columns of a terminal.
 void print_message(const std::string& text) {
-  const bool terminal = isatty(STDERR_FILENO) == 1;
-  std::size_t columns = terminal ? wanted_columns() : kAnyWidth;
-  if (columns == 0) columns = terminal_columns(STDERR_FILENO);
-  if (columns == 0) columns = settings::kTextColumns;
-  std::cerr << wrapped_message(text, std::max(columns, settings::kFewestColumns));
+  std::cerr << wrapped_message(text, isatty(STDERR_FILENO) == 1 ? columns_for(STDERR_FILENO) : kAnyWidth);
 }
 
 std::string duration_text(double time) {
@@ -134,11 +137,7 @@ int after_flush(int status) {
   return status == kDone ? static_cast<int>(kFailure) : status;
 }
 
-std::size_t text_columns() {
-  std::size_t columns = wanted_columns();
-  if (columns == 0) columns = terminal_columns(STDOUT_FILENO);
-  return columns == 0 ? settings::kTextColumns : std::max(columns, settings::kFewestColumns);
-}
+std::size_t text_columns() { return columns_for(STDOUT_FILENO); }
 
 void print_text(const Document& document, bool legend) {
   std::cout << to_text(document, legend, text_columns());

@@ -6,20 +6,18 @@ usage: terminal_pictures.py ODOMCALIBCTL DRIVE FOLDER           draws FOLDER/ter
        terminal_pictures.py --check ODOMCALIBCTL DRIVE FOLDER   whether they still show what the program prints, numbers aside
 DRIVE is build/release/docs/examples/drive.jsonl.gz.
 """
-import fcntl
 import gzip
 import html
 import os
 import pathlib
-import pty
 import re
-import struct
-import subprocess
 import sys
 import tempfile
-import termios
 
-COLUMNS, LINE, CHARACTER, MARGIN = 80, 17, 8.0, 14  # px but for the first
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "tests/integration"))
+from text_width import COLUMNS, shown_on_terminal  # noqa: E402
+
+LINE, CHARACTER, MARGIN = 17, 8.0, 14  # px
 # What is wrong with the drive that is shown: its robot line, and what takes the place of what.
 SHOWN = {
     "accepted": (["solve", "drive.jsonl"], ("", "")),
@@ -29,27 +27,6 @@ SHOWN = {
 }
 
 
-def on_terminal(command, folder):
-    """All that a terminal shows of a command, without the line of progress that it takes back."""
-    ours, theirs = pty.openpty()
-    fcntl.ioctl(theirs, termios.TIOCSWINSZ, struct.pack("HHHH", 50, COLUMNS, 0, 0))
-    environment = {name: value for name, value in os.environ.items() if name != "COLUMNS"}
-    with subprocess.Popen(command, cwd=folder, stdin=subprocess.DEVNULL, stdout=theirs, stderr=theirs, env=environment):
-        os.close(theirs)
-        seen = b""
-        while True:
-            try:
-                part = os.read(ours, 65536)
-            except OSError:  # the program has ended
-                break
-            if not part:
-                break
-            seen += part
-    os.close(ours)
-    lines = seen.decode().replace("\r\n", "\n").split("\n")
-    return [line.rsplit("\r\x1b[K", 1)[-1] for line in lines]
-
-
 def screen(program, drive, name):
     arguments, (old, new) = SHOWN[name]
     with tempfile.TemporaryDirectory() as folder:
@@ -57,7 +34,7 @@ def screen(program, drive, name):
         if old not in robot:
             sys.exit(f"{drive}: its first line has no {old}")
         pathlib.Path(folder, "drive.jsonl").write_text(robot.replace(old, new) + "\n" + rest)
-        lines = on_terminal([os.path.abspath(program), *arguments], folder)
+        lines = shown_on_terminal([os.path.abspath(program), *arguments], folder, with_results=True).split("\n")
     while lines and not lines[-1].strip():
         lines.pop()
     return ["$ odomcalibctl " + " ".join(arguments), *lines]

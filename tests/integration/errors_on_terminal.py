@@ -4,16 +4,12 @@ the same words.
 
 usage: tests/integration/errors_on_terminal.py PROGRAM SAMPLE_RECORDING"""
 
-import fcntl
 import os
-import pty
-import struct
 import subprocess
 import sys
 import tempfile
-import termios
 
-from text_width import COLUMNS, too_wide
+from text_width import COLUMNS, shown_on_terminal, too_wide
 
 ROBOT = '{"type":"robot","wheel_diameter":0.15,"track_width":0.4,"ticks_per_rev":4096,"lidar_pose":[0,0,0]}\n'
 FILES = {
@@ -40,28 +36,6 @@ CALLS = [
 ]
 
 
-def on_terminal(command, folder):
-    """Standard error of a command, whose terminal is 80 columns wide."""
-    ours, theirs = pty.openpty()
-    fcntl.ioctl(theirs, termios.TIOCSWINSZ, struct.pack("HHHH", 24, COLUMNS, 0, 0))
-    environment = {name: value for name, value in os.environ.items() if name != "COLUMNS"}
-    with subprocess.Popen(command, cwd=folder, stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=theirs, env=environment):
-        os.close(theirs)
-        seen = b""
-        while True:
-            try:
-                part = os.read(ours, 65536)
-            except OSError:  # the other side is closed
-                break
-            if not part:
-                break
-            seen += part
-    os.close(ours)
-    # The text of the progress line was taken back.
-    lines = [line.rsplit("\r\x1b[K", 1)[-1] for line in seen.decode().replace("\r\n", "\n").split("\n")]
-    return "\n".join(lines)
-
-
 def in_pipe(command, folder):
     return subprocess.run(command, cwd=folder, stdin=subprocess.DEVNULL, capture_output=True, text=True, check=False)
 
@@ -77,7 +51,7 @@ def spoken(text):
 
 def faults_of(program, arguments, folder):
     command = [program, *arguments]
-    piped, seen = in_pipe(command, folder), on_terminal(command, folder)
+    piped, seen = in_pipe(command, folder), shown_on_terminal(command, folder)
     name = "odomcalibctl " + " ".join(arguments)
     if piped.returncode == 0:
         yield f"{name}: is no error"
@@ -103,7 +77,7 @@ def main(program, sample):
             faults += faults_of(program, arguments, folder)
             if os.environ.get("SHOW"):
                 print("$ odomcalibctl", *call)
-                print(on_terminal([program, *arguments], folder))
+                print(shown_on_terminal([program, *arguments], folder))
     print("\n".join(faults))
     return 1 if faults else 0
 
