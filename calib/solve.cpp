@@ -13,11 +13,11 @@
 #include "calib/report/findings.hpp"
 #include "calib/report/gate.hpp"
 #include "calib/report/report_data.hpp"
-#include "calib/selection/fit_stages.hpp"
-#include "calib/selection/lidar_correction.hpp"
-#include "calib/selection/placed_fit.hpp"
-#include "calib/selection/recording_clocks.hpp"
 #include "calib/selection/search.hpp"
+#include "calib/stages/fit_stages.hpp"
+#include "calib/stages/lidar_correction.hpp"
+#include "calib/stages/placed_fit.hpp"
+#include "calib/stages/recording_clocks.hpp"
 
 namespace odomcalib::calib {
 namespace {
@@ -31,7 +31,7 @@ selection::SearchResult select_terms(const estimation::Fit& fit, bool is_wanted,
   found =
       selection::search_effects(fit.dataset.data, fit.model.effects, fit.result, fit.dataset.fixed(), rules,
                                 [&](double fraction) { progress("tracing the residual", fraction); });
-  return without_idle_delay({fit.dataset.data, fit.dataset.fixed()}, std::move(found));
+  return stages::without_idle_delay({fit.dataset.data, fit.dataset.fixed()}, std::move(found));
 }
 
 /// The error that makes any fit of the recordings meaningless, as far as it shows before scans are matched
@@ -52,20 +52,20 @@ Solution calibrate(measurement::Dataset opened, const terms::Request& request, c
   if (!start) return {report::refused(rough, start.error()), {}};
 
   // A stage that does not apply, that is rejected, or that follows a failed fit hands on the fit as it is.
-  const estimation::Settling how = selection::settling(request.is_automatic, progress);
+  const estimation::Settling how = stages::settling(request.is_automatic, progress);
   estimation::Fit fit = settle(std::move(rough), start.value(), how);
-  fit = selection::mount_reference(std::move(fit), how);
-  fit = selection::align_clocks(std::move(fit), request, how);
-  fit = selection::choose_scan_stamps(std::move(fit), how);
-  fit = selection::choose_sweep_timing(std::move(fit), request, how);
-  auto [corrected, lidar, placement] = selection::correct_lidar(std::move(fit), request, how);
-  placement = selection::placement_of(corrected, std::move(placement), progress);
-  fit = selection::locate(std::move(corrected), placement);
+  fit = stages::mount_reference(std::move(fit), how);
+  fit = stages::align_clocks(std::move(fit), request, how);
+  fit = stages::choose_scan_stamps(std::move(fit), how);
+  fit = stages::choose_sweep_timing(std::move(fit), request, how);
+  auto [corrected, lidar, placement] = stages::correct_lidar(std::move(fit), request, how);
+  placement = stages::placement_of(corrected, std::move(placement), progress);
+  fit = stages::locate(std::move(corrected), placement);
   if (fit.failure) return {report::refused(fit, options.cuts), {}};
 
   selection::SearchResult found = select_terms(fit, request.is_automatic, options.rules, progress);
   const auto [outcome, every_scan_placed] =
-      selection::fit_to_every_scan(std::move(found), fit.dataset, std::move(placement), progress);
+      stages::fit_to_every_scan(std::move(found), fit.dataset, std::move(placement), progress);
 
   progress("validating", 0.0);
   Calibration calibration = report::calibrated(

@@ -30,7 +30,7 @@ MAY_INCLUDE = {
 LAYERS = {
     "proto": [".", "wire", "recording", "calibration", "control"],
     "calib": ["math", "wheels", "vehicle", "terms", "matching", "ingest", "measurement", "classical", "estimation",
-              "selection", "odometry", ("report", "slam", "comparison", "library"), "."],
+              "validation", "selection", "stages", "odometry", ("report", "slam", "comparison", "library"), "."],
     "drivers": [".", ("serial", "tcp"), "can", ("base", "lidar"), "decode"],
     "daemon": ["routines", "safety", "writeback", "config", ("service", "cli")],
 }

@@ -1,5 +1,5 @@
 // Recordings that are solved together are of one robot: whether what they state says that they are of two
-// robots. What they show when they were fitted is judged later (selection/homogeneity.hpp,
+// robots. What they show when they were fitted is judged later (report/homogeneity.hpp,
 // report/one_robot.hpp).
 #pragma once
 

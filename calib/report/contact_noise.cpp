@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "calib/measurement/whitening.hpp"
-#include "calib/selection/settings.hpp"
+#include "calib/validation/settings.hpp"
 #include "calib/vehicle/drive_model.hpp"
 
 namespace odomcalib::calib::report {
@@ -38,10 +38,10 @@ Eigen::Vector3d variances_of_wheels(const measurement::SensorPair& pair,
   return variances;
 }
 
-std::vector<Eigen::Vector3d> errors_of(std::span<const selection::HeldOutError> held_out) {
+std::vector<Eigen::Vector3d> errors_of(std::span<const validation::HeldOutError> held_out) {
   std::vector<Eigen::Vector3d> errors;
   errors.reserve(held_out.size());
-  for (const selection::HeldOutError& one : held_out) errors.push_back(one.error);
+  for (const validation::HeldOutError& one : held_out) errors.push_back(one.error);
   return errors;
 }
 
@@ -49,7 +49,7 @@ std::vector<Eigen::Vector3d> errors_of(std::span<const selection::HeldOutError> 
 
 std::optional<odometry::IncrementNoise> contact_noise(const measurement::Dataset& dataset,
                                                       const selection::FittedModel& model,
-                                                      std::span<const selection::HeldOutError> held_out) {
+                                                      std::span<const validation::HeldOutError> held_out) {
   if (held_out.empty()) return std::nullopt;
   const estimation::FitResult& fit = model.fit;
   const auto noise = noise_shown(dataset.data, model.effects, fit, errors_of(held_out));
@@ -59,7 +59,7 @@ std::optional<odometry::IncrementNoise> contact_noise(const measurement::Dataset
   std::size_t k = 0;
   for (std::size_t i = 0; i < dataset.data.size(); ++i)
     for (const measurement::SensorPair& pair : dataset.data[i].pairs) {
-      if (fit.weights[k++] < selection::settings::kTrustedWeight) continue;
+      if (fit.weights[k++] < validation::settings::kTrustedWeight) continue;
       sum += variances_of_wheels(pair, noise[i]);
       way += way_rolled(*dataset.data[i].model, pair.interval, base);
     }

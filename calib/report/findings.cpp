@@ -17,14 +17,14 @@
 #include "calib/report/gate.hpp"
 #include "calib/report/left_out.hpp"
 #include "calib/report/one_robot.hpp"
+#include "calib/report/outlier_trace.hpp"
 #include "calib/report/report.hpp"
 #include "calib/report/report_data.hpp"
 #include "calib/report/settings.hpp"
 #include "calib/report/verdict_rules.hpp"
-#include "calib/selection/held_out.hpp"
 #include "calib/selection/lidar_trace.hpp"
-#include "calib/selection/outlier_trace.hpp"
 #include "calib/selection/selection_json.hpp"
+#include "calib/validation/held_out.hpp"
 
 namespace odomcalib::calib::report {
 namespace {
@@ -62,7 +62,7 @@ std::vector<std::string> remarks_on(const estimation::GyroFit& witness,
 }
 
 using SmoothTerms = std::vector<terms::FittedSmoothTerm>;
-using Outliers = std::optional<selection::OutlierTrace>;
+using Outliers = std::optional<report::OutlierTrace>;
 using PlainFit = std::optional<estimation::FitResult>;
 
 /// Base parameters: values, and how well they are known.
@@ -84,7 +84,7 @@ double scale_deviation(const Findings& found) {
 
 /// With what was found in all recordings, what each of them says alone.
 struct Agreement {
-  std::optional<selection::Homogeneity> homogeneity;
+  std::optional<report::Homogeneity> homogeneity;
   std::optional<Disagreement> apart;  ///< what speaks against one set of lengths
 };
 
@@ -94,8 +94,7 @@ Agreement agreement(const Findings& found) {
   std::vector<std::string> names;
   for (const Recording& recording : dataset.recordings.view()) names.push_back(recording.name);
   const double metre = dataset.reference_is_scans() ? settings::kMatcherScale : 0.0;
-  auto homogeneity =
-      selection::homogeneity({dataset.data, dataset.fixed()}, found.outcome.model, metre, names);
+  auto homogeneity = report::homogeneity({dataset.data, dataset.fixed()}, found.outcome.model, metre, names);
   if (!homogeneity) return {};
   auto apart = recordings_apart(*homogeneity, dataset.recordings.view());
   return {std::move(homogeneity), std::move(apart)};
@@ -151,13 +150,13 @@ PlainFit plain_fit(const Findings& found) {
   return plain ? PlainFit(std::move(plain).value()) : std::nullopt;
 }
 
-using HeldOutErrors = std::vector<selection::HeldOutError>;
+using HeldOutErrors = std::vector<validation::HeldOutError>;
 
 HeldOutErrors held_out(const Findings& found) {
   const measurement::Dataset& dataset = found.fit.dataset;
   const auto& [effects, fit] = found.outcome.model;
-  return selection::held_out_errors(dataset.data, effects, fit,
-                                    vehicle::fixed_with(dataset.fixed(), effects));
+  return validation::held_out_errors(dataset.data, effects, fit,
+                                     vehicle::fixed_with(dataset.fixed(), effects));
 }
 
 ResidualReport residual(const Findings& found, const PlainFit& plain, const HeldOutErrors& of_all) {
@@ -165,9 +164,9 @@ ResidualReport residual(const Findings& found, const PlainFit& plain, const Held
   const auto& [effects, fit] = found.outcome.model;
   const auto of_plain = effects.empty() || !plain
                             ? of_all
-                            : selection::held_out_errors(dataset.data, {}, *plain, dataset.fixed());
-  const auto after = selection::held_out_residual(of_all, of_plain);
-  const auto before = selection::held_out_residual(of_plain, of_all);
+                            : validation::held_out_errors(dataset.data, {}, *plain, dataset.fixed());
+  const auto after = validation::held_out_residual(of_all, of_plain);
+  const auto before = validation::held_out_residual(of_plain, of_all);
   if (!after || !before) return {false, {}, {}, {}};
   return {true, before->rms, after->rms, after->noise_floor};
 }
@@ -177,8 +176,8 @@ ResidualReport residual(const Findings& found, const PlainFit& plain, const Held
 Outliers outliers_of(const Findings& found) {
   const auto& data = found.fit.dataset.data;
   const auto& [effects, fit] = found.outcome.model;
-  Outliers outliers = selection::trace_outliers(data, fit);
-  if (outliers) outliers->cause = selection::cause_of_outliers(data, effects, fit);
+  Outliers outliers = report::trace_outliers(data, fit);
+  if (outliers) outliers->cause = report::cause_of_outliers(data, effects, fit);
   return outliers;
 }
 

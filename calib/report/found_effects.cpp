@@ -3,11 +3,11 @@
 #include <algorithm>
 #include <cmath>
 
-#include "calib/selection/folds.hpp"
 #include "calib/selection/selection_json.hpp"
 #include "calib/selection/settings.hpp"
-#include "calib/selection/window_errors.hpp"
 #include "calib/terms/smooth_term.hpp"
+#include "calib/validation/folds.hpp"
+#include "calib/validation/window_errors.hpp"
 
 namespace odomcalib::calib::report {
 namespace {
@@ -39,14 +39,15 @@ Evidence evidence_against(const std::optional<estimation::FitResult>& plain, con
   if (!plain) return evidence;
   const measurement::Dataset& dataset = found.fit.dataset;
   const auto& [effects, fit] = found.outcome.model;
-  const auto windows =
-      find_windows(selection::WindowKind::open_loop, dataset.data, selection::folds_of(dataset.data), fit,
-                   selection::trusted_pairs(*plain, fit));
+  const auto windows = validation::find_windows(validation::WindowKind::open_loop, dataset.data,
+                                                validation::folds_of(dataset.data), fit,
+                                                validation::trusted_pairs(*plain, fit));
   if (windows.size() < selection::settings::kFewestWindows) return evidence;
-  evidence.held_out_before = window_errors(dataset.data, windows, {}, *plain, dataset.fixed()).rms_position();
-  evidence.held_out_after =
-      window_errors(dataset.data, windows, effects, fit, vehicle::fixed_with(dataset.fixed(), effects))
-          .rms_position();
+  evidence.held_out_before =
+      validation::window_errors(dataset.data, windows, {}, *plain, dataset.fixed()).rms_position();
+  evidence.held_out_after = validation::window_errors(dataset.data, windows, effects, fit,
+                                                      vehicle::fixed_with(dataset.fixed(), effects))
+                                .rms_position();
   return evidence;
 }
 
@@ -175,7 +176,7 @@ std::optional<Unexplained> unnamed_smooths(const Findings& found) {
   return summary.result();
 }
 
-std::optional<Unexplained> flagged_outliers(const selection::OutlierTrace& outliers) {
+std::optional<Unexplained> flagged_outliers(const report::OutlierTrace& outliers) {
   return flagged(outliers.depends_on, outliers.p_value);
 }
 

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "calib/report/findings.hpp"
-#include "calib/selection/outlier_trace.hpp"
+#include "calib/report/outlier_trace.hpp"
 #include "calib/selection/selection_json.hpp"
 
 namespace odomcalib::calib::report {
@@ -24,7 +24,7 @@ std::vector<terms::FittedSmoothTerm> found_smooths(const Findings& found);
 std::optional<Unexplained> unnamed_smooths(const Findings& found);
 
 /// Where the only finding of a recording is what goes with its outliers: a defect that is not compensated.
-std::optional<Unexplained> flagged_outliers(const selection::OutlierTrace& outliers);
+std::optional<Unexplained> flagged_outliers(const report::OutlierTrace& outliers);
 
 /// Covariates that odometry's error goes with although no function of them predicts it: not compensated.
 std::optional<Unexplained> failed_validation(const selection::SearchResult& outcome);

@@ -17,11 +17,11 @@ bool is_length(Eigen::Index parameter) { return parameter < vehicle::kMountX; }
 /// Diameters are stated, radii fitted.
 double factor_of(Eigen::Index parameter) { return parameter < vehicle::kTrackWidth ? 2.0 : 1.0; }
 
-double value_of(const selection::Homogeneity& found, std::size_t recording, Eigen::Index parameter) {
+double value_of(const report::Homogeneity& found, std::size_t recording, Eigen::Index parameter) {
   return found.own[recording] ? found.own[recording]->value(parameter) : 0.0;
 }
 
-std::string amount_of_difference(const selection::Homogeneity& found, Eigen::Index parameter,
+std::string amount_of_difference(const report::Homogeneity& found, Eigen::Index parameter,
                                  double difference) {
   if (parameter == vehicle::kMountYaw) return math::degrees_text(std::abs(difference));
   if (!is_length(parameter)) return math::millimetres_text(std::abs(difference));
@@ -31,7 +31,7 @@ std::string amount_of_difference(const selection::Homogeneity& found, Eigen::Ind
 }
 
 /// So large a difference is none that wider deviations could stand for.
-bool is_too_far(const selection::Homogeneity& found, std::size_t recording, Eigen::Index parameter) {
+bool is_too_far(const report::Homogeneity& found, std::size_t recording, Eigen::Index parameter) {
   const auto row = static_cast<Eigen::Index>(recording);
   if (!(std::abs(found.sigmas(row, parameter)) > settings::kPlainlyApart)) return false;
   const double difference = std::abs(found.differences(row, parameter));
@@ -40,7 +40,7 @@ bool is_too_far(const selection::Homogeneity& found, std::size_t recording, Eige
   return difference > settings::kLengthApart * std::abs(value_of(found, recording, parameter));
 }
 
-bool any_too_far(const selection::Homogeneity& found) {
+bool any_too_far(const report::Homogeneity& found) {
   for (std::size_t i = 0; i < found.own.size(); ++i)
     for (Eigen::Index k = 0; k < found.sigmas.cols(); ++k)
       if (is_too_far(found, i, k)) return true;
@@ -49,7 +49,7 @@ bool any_too_far(const selection::Homogeneity& found) {
 
 }  // namespace
 
-std::optional<Disagreement> recordings_apart(const selection::Homogeneity& found,
+std::optional<Disagreement> recordings_apart(const report::Homogeneity& found,
                                              std::span<const Recording> recordings) {
   if (!(found.p_value < settings::kApartLevel)) return std::nullopt;
   const auto row = static_cast<Eigen::Index>(found.recording);
@@ -71,7 +71,7 @@ std::optional<Disagreement> recordings_apart(const selection::Homogeneity& found
                  "or floor changed, solve them separately"};
 }
 
-void store_homogeneity(const selection::Homogeneity& found, std::span<const Recording> recordings,
+void store_homogeneity(const report::Homogeneity& found, std::span<const Recording> recordings,
                        Calibration& calibration) {
   const std::vector<std::string> names = base_quantity_names();
   Json all = Json::array();

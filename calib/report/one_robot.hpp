@@ -6,18 +6,18 @@
 #include <span>
 
 #include "calib/report/gate.hpp"
-#include "calib/selection/homogeneity.hpp"
+#include "calib/report/homogeneity.hpp"
 #include "proto/calibration/calibration.hpp"
 #include "proto/recording/recording.hpp"
 
 namespace odomcalib::calib::report {
 
 /// Evidence against one set of lengths; nullopt where chance explains the differences.
-std::optional<Disagreement> recordings_apart(const selection::Homogeneity& found,
+std::optional<Disagreement> recordings_apart(const report::Homogeneity& found,
                                              std::span<const Recording> recordings);
 
 /// The members `recordings` and `homogeneity` of the calibration file.
-void store_homogeneity(const selection::Homogeneity& found, std::span<const Recording> recordings,
+void store_homogeneity(const report::Homogeneity& found, std::span<const Recording> recordings,
                        Calibration& calibration);
 
 }  // namespace odomcalib::calib::report

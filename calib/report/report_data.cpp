@@ -5,12 +5,12 @@
 
 #include "calib/math/median.hpp"
 #include "calib/report/report.hpp"
+#include "calib/report/residual_trace.hpp"
 #include "calib/report/scan_overlay.hpp"
 #include "calib/report/settings.hpp"
-#include "calib/selection/drive_error.hpp"
-#include "calib/selection/folds.hpp"
-#include "calib/selection/residual_trace.hpp"
-#include "calib/selection/settings.hpp"
+#include "calib/validation/drive_error.hpp"
+#include "calib/validation/folds.hpp"
+#include "calib/validation/settings.hpp"
 
 namespace odomcalib::calib::report {
 namespace {
@@ -50,7 +50,7 @@ std::vector<PathTrace> paths_of(const measurement::Dataset& dataset, const vehic
   if (dataset.has_motions_alone()) return {};
   const auto longest = std::max_element(
       data.begin(), data.end(), [](const auto& a, const auto& b) { return a.pairs.size() < b.pairs.size(); });
-  const Eigen::VectorXd nominal = selection::with_wheels(fit.parameters, effects, dataset.nominal);
+  const Eigen::VectorXd nominal = validation::with_wheels(fit.parameters, effects, dataset.nominal);
   const vehicle::Trajectory calibrated =
       longest->model->trajectory(vehicle::as_span(fit.parameters), effects);
   const math::Pose mount = vehicle::to_base(vehicle::as_span(fit.parameters)).mount;
@@ -63,7 +63,7 @@ std::vector<PathTrace> paths_of(const measurement::Dataset& dataset, const vehic
 std::vector<double> sigmas_of(const estimation::FitResult& fit, Eigen::Index axis) {
   std::vector<double> sigmas;
   for (std::size_t k = 0; k < fit.weights.size(); ++k)
-    if (fit.weights[k] >= selection::settings::kTrustedWeight)
+    if (fit.weights[k] >= validation::settings::kTrustedWeight)
       sigmas.push_back(fit.whitened_residual(static_cast<Eigen::Index>(3 * k) + axis));
   return sigmas;
 }
@@ -108,7 +108,7 @@ ResidualAxis axis_of(const estimation::FitResult& fit, Eigen::Index axis, const 
   double count = 0.0;
   double squares = 0.0;
   for (std::size_t k = 0; k < fit.weights.size(); ++k) {
-    if (fit.weights[k] < selection::settings::kTrustedWeight) continue;
+    if (fit.weights[k] < validation::settings::kTrustedWeight) continue;
     const double r = fit.residuals(static_cast<Eigen::Index>(k), axis);
     out.mean += r;
     squares += r * r;
@@ -135,7 +135,7 @@ void add_noise(const measurement::Dataset& dataset, const estimation::FitResult&
     for (std::size_t i = 0; i < dataset.data.size(); ++i) {
       const measurement::NoiseModel& noise = fit.noise[i];
       for (const measurement::SensorPair& pair : dataset.data[i].pairs) {
-        if (fit.weights[k++] < selection::settings::kTrustedWeight) continue;
+        if (fit.weights[k++] < validation::settings::kTrustedWeight) continue;
         reference.push_back(noise.matcher_scale * std::sqrt(pair.covariance(row, row)));
         wheels.push_back(axis < 2 ? noise.process_translation : noise.process_rotation);
       }
@@ -163,12 +163,12 @@ std::vector<ResidualSample> series_of(const measurement::Dataset& dataset, const
 std::vector<std::pair<std::string, std::vector<double>>> left_out_of(const measurement::Dataset& dataset,
                                                                      const estimation::FitResult& fit,
                                                                      const std::vector<bool>& fixed) {
-  const auto folds = selection::folds_of(dataset.data);
+  const auto folds = validation::folds_of(dataset.data);
   std::vector<std::pair<std::string, std::vector<double>>> parameters;
   for (const std::string& name : base_quantity_names()) parameters.push_back({name, {}});
-  for (std::size_t fold = 0; fold < selection::kFolds; ++fold) {
+  for (std::size_t fold = 0; fold < validation::kFolds; ++fold) {
     const wheels::BaseParameters base =
-        vehicle::to_base(vehicle::as_span(selection::without_fold(fit, folds, fold, fixed)));
+        vehicle::to_base(vehicle::as_span(validation::without_fold(fit, folds, fold, fixed)));
     const double values[] = {2.0 * base.left_radius, 2.0 * base.right_radius,
                              base.track_width,       base.mount.x,
                              base.mount.y,           math::wrap_angle(base.mount.yaw)};
@@ -189,12 +189,12 @@ ReportData make_report_data(const measurement::Dataset& dataset, const selection
   const estimation::FitResult& fit = found.model.fit;
   ReportData data;
   const auto fixed = vehicle::fixed_with(dataset.fixed(), effects);
-  const selection::JudgedModel full{&fit, fixed, effects};
-  const selection::JudgedModel geometry{plain ? &*plain : nullptr, dataset.fixed(), {}};
-  const selection::JudgedModel* without_effects = plain && !effects.empty() ? &geometry : nullptr;
-  data.drive_errors = drive_errors(dataset.data, dataset.nominal, without_effects, full);
-  data.growth = error_growth(dataset.data, dataset.nominal, without_effects, full);
-  data.traces = selection::residual_traces(dataset.data, effects, fit, fixed, found.nuisance);
+  const validation::JudgedModel full{&fit, fixed, effects};
+  const validation::JudgedModel geometry{plain ? &*plain : nullptr, dataset.fixed(), {}};
+  const validation::JudgedModel* without_effects = plain && !effects.empty() ? &geometry : nullptr;
+  data.drive_errors = validation::drive_errors(dataset.data, dataset.nominal, without_effects, full);
+  data.growth = validation::error_growth(dataset.data, dataset.nominal, without_effects, full);
+  data.traces = report::residual_traces(dataset.data, effects, fit, fixed, found.nuisance);
   data.detectable = found.detectable;
   data.paths = paths_of(dataset, effects, fit);
   data.scans = scan_overlay(dataset, effects, fit, fixed);
@@ -209,7 +209,7 @@ std::vector<measurement::SamplePair> sample_pairs(const measurement::Dataset& da
                                                   const vehicle::EffectList& effects,
                                                   const estimation::FitResult& fit) {
   const math::Pose mount = vehicle::to_base(vehicle::as_span(fit.parameters)).mount;
-  const Eigen::VectorXd nominal = selection::with_wheels(fit.parameters, effects, dataset.nominal);
+  const Eigen::VectorXd nominal = validation::with_wheels(fit.parameters, effects, dataset.nominal);
   std::vector<measurement::SamplePair> samples;
   for (std::size_t i = 0; i < dataset.data.size(); ++i) {
     const vehicle::Trajectory odometry =

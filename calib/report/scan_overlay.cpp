@@ -4,9 +4,9 @@
 #include <cmath>
 
 #include "calib/report/settings.hpp"
-#include "calib/selection/drive_error.hpp"
-#include "calib/selection/folds.hpp"
-#include "calib/selection/settings.hpp"
+#include "calib/validation/drive_error.hpp"
+#include "calib/validation/folds.hpp"
+#include "calib/validation/settings.hpp"
 
 namespace odomcalib::calib::report {
 namespace {
@@ -29,7 +29,7 @@ std::vector<Block> blocks_of(std::span<const measurement::FitData> data,
         blocks.push_back({d, fold, pair.interval, 0.0});
       blocks.back().interval.end = pair.interval.end;
       blocks.back().motion += std::hypot(pair.motion.x, pair.motion.y) +
-                              selection::settings::kHeadingLever_m * std::abs(pair.motion.yaw);
+                              validation::settings::kHeadingLever_m * std::abs(pair.motion.yaw);
     }
   return blocks;
 }
@@ -80,14 +80,14 @@ std::vector<ScanTrace> scan_overlay(const measurement::Dataset& dataset, const v
                                     const estimation::FitResult& fit, const std::vector<bool>& fixed) {
   const wheels::BaseParameters& nominal = dataset.nominal;
   const bool stated = nominal.left_radius > 0.0 && nominal.right_radius > 0.0 && nominal.track_width > 0.0;
-  const auto folds = selection::folds_of(dataset.data);
-  if (dataset.has_motions_alone() || !dataset.reference_is_scans() || !stated || !selection::hold_out(folds))
+  const auto folds = validation::folds_of(dataset.data);
+  if (dataset.has_motions_alone() || !dataset.reference_is_scans() || !stated || !validation::hold_out(folds))
     return {};
   const auto blocks = blocks_of(dataset.data, folds);
   const Block& block = *std::max_element(blocks.begin(), blocks.end(),
                                          [](const Block& a, const Block& b) { return a.motion < b.motion; });
-  const Eigen::VectorXd found = selection::without_fold(fit, folds, block.fold, fixed);
-  const Eigen::VectorXd stated_wheels = selection::with_wheels(found, effects, nominal);
+  const Eigen::VectorXd found = validation::without_fold(fit, folds, block.fold, fixed);
+  const Eigen::VectorXd stated_wheels = validation::with_wheels(found, effects, nominal);
   const vehicle::DriveModel& model = *dataset.data[block.recording].model;
   const vehicle::Trajectory after = model.trajectory(vehicle::as_span(found), effects),
                             before = model.trajectory(vehicle::as_span(stated_wheels), effects);

@@ -119,4 +119,55 @@ inline constexpr std::size_t kOverlaidScans = 8, kOverlaidBeams = 150;
 inline constexpr std::size_t kHistogramBins = 20;
 inline constexpr double kHistogramEnd = 5.0;
 
+// --- Homogeneity -----------------------------------------------------------------------------------------
+
+/// Relative deviation of each length that one recording must determine alone to be compared with others.
+/// Chosen.
+inline constexpr double kKnownAlone = 0.02;
+
+// --- Outlier cause ---------------------------------------------------------------------------------------
+
+/// Squared ratio of distances, to the places and to the wheels' motion, from which the wheels are at fault.
+/// Derived: half as far.
+inline constexpr double kNearPlaces = 0.25;
+/// m and rad, of a pair at rest. Chosen.
+inline constexpr double kAtRest = 0.01;
+/// Outliers whose mean is reported as a cause, and deviations of that mean from zero. Chosen.
+inline constexpr double kFewestOfCause = 5.0, kClearCause = 4.0;
+
+// --- Outlier trace ---------------------------------------------------------------------------------------
+
+/// Outlying events that are traced; fewer have everything in common. Chosen.
+inline constexpr std::size_t kFewestEvents = 5;
+/// Share of all pairs that outliers must be to be traced. Chosen.
+inline constexpr double kFewestOutliers = 0.015;
+/// Family-wise level of a covariate of the outliers. Derived: no draw of kOutlierDraws is above.
+inline constexpr double kOutlierLevel = 0.001;
+/// Share of the best gain from which a covariate may as well be the one. Chosen.
+inline constexpr double kAsGood = 0.8;
+/// Slices of each coordinate of a place; their square is the number of bins of any other covariate. Chosen.
+inline constexpr std::size_t kPlaceSlices = 4;
+/// Times the usual share of events, above which a bin belongs to the range that is reported. Chosen.
+inline constexpr double kUnusualShare = 2.0;
+/// Covariates named of outliers. Chosen.
+inline constexpr std::size_t kMostNamed = 3;
+/// Random permutations; the finest p-value is 1 / (1 + draws). Chosen.
+inline constexpr int kOutlierDraws = 999;
+
+// --- Residual trace --------------------------------------------------------------------------------------
+
+/// Gain of the correlation ratio that a division must bring. Chosen.
+inline constexpr double kWorthDividing = 0.1;
+/// Gain of the correlation ratio that a less simple covariate must bring. Chosen.
+inline constexpr double kWorthChanging = 0.02;
+/// rad; a reversal farther back is forgotten. Chosen.
+inline constexpr double kFarBack = 20.0;
+/// Index in vehicle::kPlays of the play by which a wheel's reversal is drawn: so much of it goes by until it
+/// is taken up. Chosen.
+inline constexpr std::size_t kUsualPlay = 9;
+/// Bins over a covariate, and points of the picture. Chosen.
+inline constexpr std::size_t kTraceBins = 16, kMostTracePoints = 300;
+/// m and rad, of a motion that a residual is divided by; smaller ones are left out of the picture. Chosen.
+inline constexpr double kLeastDividingWay_m = 0.03, kLeastDividingTurn_rad = 0.05;
+
 }  // namespace odomcalib::calib::report::settings

@@ -11,7 +11,7 @@
 #include "calib/classical/settings.hpp"
 #include "calib/math/number_text.hpp"
 #include "calib/report/settings.hpp"
-#include "calib/selection/drive_error.hpp"
+#include "calib/validation/drive_error.hpp"
 
 namespace odomcalib::calib::report {
 namespace {
@@ -107,7 +107,7 @@ Objections still_off(const Calibration&, const VerdictEvidence& evidence) {
 
 /// The error over ten seconds where it is more than noise explains; null otherwise.
 const DriveError* excessive(const std::vector<DriveError>& errors) {
-  const DriveError* error = selection::open_loop_position(errors);
+  const DriveError* error = validation::open_loop_position(errors);
   if (error == nullptr || !error->after || !error->noise_floor) return nullptr;
   const double floor = *error->noise_floor;
   return error->after->value > settings::kWarnResidual * floor && error->after->low > floor ? error : nullptr;

@@ -4,10 +4,10 @@
 #include <optional>
 #include <utility>
 
-#include "calib/selection/drive_error.hpp"
 #include "calib/selection/hyperparameters.hpp"
 #include "calib/selection/plausibility.hpp"
 #include "calib/selection/settings.hpp"
+#include "calib/validation/drive_error.hpp"
 
 namespace odomcalib::calib::selection {
 namespace {
@@ -56,9 +56,9 @@ bool eliminate_one(const FitTask& task, double per_parameter, SearchResult& resu
 
 /// Error of odometry over ten seconds with the model's effects; nullopt where the drive is too short for it.
 std::optional<DriveError> open_loop_error(const FitTask& task, const FittedModel& model) {
-  const JudgedModel judged{&model.fit, task.fixed(model.effects), model.effects};
-  const auto errors = drive_errors(task.data, {}, nullptr, judged);
-  const DriveError* found = open_loop_position(errors);
+  const validation::JudgedModel judged{&model.fit, task.fixed(model.effects), model.effects};
+  const auto errors = validation::drive_errors(task.data, {}, nullptr, judged);
+  const DriveError* found = validation::open_loop_position(errors);
   return found == nullptr || !found->after || !found->noise_floor ? std::nullopt : std::optional(*found);
 }
 
@@ -81,8 +81,8 @@ std::optional<FreeTerm> free_alternative_to(const FitTask& task, const FittedMod
       !is_better(task, model, dependence->model, schwarz(model.fit)))
     return std::nullopt;
   CrossValidation validation;
-  const auto missing =
-      objection(task, *without, dependence->model, all_folds(), largest_ratio(candidate), validation);
+  const auto missing = objection(task, *without, dependence->model, validation::all_folds(),
+                                 largest_ratio(candidate), validation);
   return missing.empty() ? std::optional(FreeTerm{std::move(*dependence), validation}) : std::nullopt;
 }
 

@@ -5,7 +5,7 @@
 #include <string>
 
 #include "calib/selection/fitted_model.hpp"
-#include "calib/selection/window_errors.hpp"
+#include "calib/validation/window_errors.hpp"
 
 namespace odomcalib::calib::selection {
 
@@ -14,7 +14,7 @@ struct CrossValidation {
   double family_p_value = 1.0;
   double before = 0.0;  ///< held-out position error over ten seconds, m
   double after = 0.0;
-  Improvement improvement;
+  validation::Improvement improvement;
 };
 
 /// Change of held-out drives by another model.
@@ -32,10 +32,11 @@ DriveChange change_of_drives(const FitTask& task, const FittedModel& before, con
 /// @param largest_ratio of the errors over ten seconds after and before
 /// @return empty if it holds, otherwise what is missing
 std::string objection(const FitTask& task, const FittedModel& before, const FittedModel& after,
-                      const FoldFlags& selected, double largest_ratio, CrossValidation& validation);
+                      const validation::FoldFlags& selected, double largest_ratio,
+                      CrossValidation& validation);
 
 /// Each model's own weights spare what it explains badly: both are compared with the larger ones.
-HeldOutGain compared_on_held_out(const FitTask& task, const FittedModel& before, const FittedModel& after,
-                                 const FoldFlags& selected);
+validation::HeldOutGain compared_on_held_out(const FitTask& task, const FittedModel& before,
+                                             const FittedModel& after, const validation::FoldFlags& selected);
 
 }  // namespace odomcalib::calib::selection

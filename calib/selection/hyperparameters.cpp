@@ -196,7 +196,7 @@ bool is_better(const FitTask& task, const FittedModel& given, const FittedModel&
                double per_parameter) {
   const double more = effective_parameters(other.fit) - effective_parameters(given.fit);
   return given.fit.cost - other.fit.cost > per_parameter * more &&
-         compared_on_held_out(task, given, other, all_folds()).total > 0.0;
+         compared_on_held_out(task, given, other, validation::all_folds()).total > 0.0;
 }
 
 Eigen::VectorXd uncertainty_of_zero(const FitTask& task, const FittedModel& model,

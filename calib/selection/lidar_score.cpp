@@ -10,6 +10,7 @@
 #include "calib/math/vector2.hpp"
 #include "calib/selection/score.hpp"
 #include "calib/selection/settings.hpp"
+#include "calib/validation/settings.hpp"
 
 namespace odomcalib::calib::selection {
 namespace {
@@ -56,7 +57,7 @@ void clip(Rows& rows) {
   for (Eigen::Index i = 0; i < rows.residual.size(); ++i)
     magnitudes[static_cast<std::size_t>(i)] = std::abs(rows.residual(i));
   const double limit =
-      settings::kClip * std::max(1.0, math::kMadToSigma * math::median_of(std::move(magnitudes)));
+      validation::settings::kClip * std::max(1.0, math::kMadToSigma * math::median_of(std::move(magnitudes)));
   for (Eigen::Index i = 0; i < rows.residual.size(); ++i)
     if (std::abs(rows.residual(i)) > limit) {
       rows.residual(i) = 0.0;
@@ -199,7 +200,7 @@ Eigen::VectorXd solved(const std::vector<PairScore>& pairs, const std::vector<Ei
   Eigen::MatrixXd gram = Eigen::MatrixXd::Zero(n, n);
   Eigen::VectorXd gradient = Eigen::VectorXd::Zero(n);
   for (std::size_t g = 0; g < pairs.size(); ++g) {
-    if (without_fold < kFolds && g * kFolds / pairs.size() == without_fold) continue;
+    if (without_fold < validation::kFolds && g * validation::kFolds / pairs.size() == without_fold) continue;
     gram += part(pairs[g].gram, columns, columns);
     gradient += pairs[g].gradient(columns);
   }
@@ -235,7 +236,7 @@ std::vector<Eigen::Index> LidarScores::columns(const std::vector<std::size_t>& e
 }
 
 double LidarScores::variance(const std::vector<Eigen::Index>& taken) const {
-  const Eigen::VectorXd values = solved(pairs_, taken, kFolds);
+  const Eigen::VectorXd values = solved(pairs_, taken, validation::kFolds);
   double squares = 0.0, points = 0.0;
   for (const PairScore& pair : pairs_) {
     squares += pair.squares - gain_of_columns(pair, taken, values);
@@ -271,7 +272,7 @@ LidarFit LidarScores::fit(const std::vector<std::size_t>& accepted) const {
   const auto n = static_cast<Eigen::Index>(taken.size());
   Eigen::MatrixXd scatter = Eigen::MatrixXd::Zero(n, n);
   const Eigen::MatrixXd basis = visible(part(total_.gram, taken, taken), settings::kVisible);
-  LidarFit result{solved(pairs_, taken, kFolds), Eigen::VectorXd::Zero(n)};
+  LidarFit result{solved(pairs_, taken, validation::kFolds), Eigen::VectorXd::Zero(n)};
   for (const PairScore& pair : pairs_) {
     const Eigen::VectorXd left = pair.gradient(taken) - part(pair.gram, taken, taken) * result.values;
     scatter += left * left.transpose();
@@ -281,17 +282,17 @@ LidarFit LidarScores::fit(const std::vector<std::size_t>& accepted) const {
   return result;
 }
 
-LidarScores::HeldOut LidarScores::held_out(const std::vector<std::size_t>& accepted,
-                                           std::size_t candidate) const {
+LidarScores::Gain LidarScores::held_out(const std::vector<std::size_t>& accepted,
+                                        std::size_t candidate) const {
   std::vector<std::size_t> more = accepted;
   more.push_back(candidate);
   const auto few_columns = columns(accepted), all_columns = columns(more);
   const double usual = total_.squares / static_cast<double>(pairs_.size());
   double before = 0.0, after = 0.0, points = 0.0, sum = 0.0, squares = 0.0;
-  for (std::size_t fold = 0; fold < kFolds; ++fold) {
+  for (std::size_t fold = 0; fold < validation::kFolds; ++fold) {
     const Eigen::VectorXd few = solved(pairs_, few_columns, fold), all = solved(pairs_, all_columns, fold);
     for (std::size_t g = 0; g < pairs_.size(); ++g) {
-      if (g * kFolds / pairs_.size() != fold) continue;
+      if (g * validation::kFolds / pairs_.size() != fold) continue;
       const double without = gain_of_columns(pairs_[g], few_columns, few),
                    with = gain_of_columns(pairs_[g], all_columns, all);
       before += pairs_[g].squares - without;

@@ -50,11 +50,11 @@ class LidarScores {
   [[nodiscard]] LidarFit fit(const std::vector<std::size_t>& accepted) const;
 
   /// Held-out gain of adding a candidate: five folds of pairs, each predicted by the others.
-  struct HeldOut {
+  struct Gain {
     double before = 0.0, after = 0.0;  ///< m, RMS of the distances between the scans
     double z = 0.0;  ///< mean gain per pair, relative to what the pair leaves, in its standard deviations
   };
-  [[nodiscard]] HeldOut held_out(const std::vector<std::size_t>& accepted, std::size_t candidate) const;
+  [[nodiscard]] Gain held_out(const std::vector<std::size_t>& accepted, std::size_t candidate) const;
 
  private:
   /// Variance of the whitened distances that the accepted leave.

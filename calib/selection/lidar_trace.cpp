@@ -7,6 +7,7 @@
 #include "calib/selection/lidar_score.hpp"
 #include "calib/selection/settings.hpp"
 #include "calib/terms/lidar_smooth_term.hpp"
+#include "calib/validation/settings.hpp"
 
 namespace odomcalib::calib::selection {
 namespace {
@@ -39,7 +40,7 @@ std::vector<double> bearings_in(const std::vector<measurement::HeadingPair>& pai
 /// No value of it is beyond what chance leaves.
 bool is_superfluous(const terms::LidarFinding& finding) {
   for (std::size_t k = 0; k < finding.values.size(); ++k)
-    if (std::abs(finding.values[k]) > settings::kNormal95 * finding.deviations[k]) return false;
+    if (std::abs(finding.values[k]) > validation::settings::kNormal95 * finding.deviations[k]) return false;
   return finding.effect->is_named();
 }
 
@@ -117,7 +118,7 @@ class LidarTrace {
     return *scores_.candidates()[candidate].effect;
   }
 
-  [[nodiscard]] bool is_worthwhile(std::size_t candidate, const LidarScores::HeldOut& validation) const {
+  [[nodiscard]] bool is_worthwhile(std::size_t candidate, const LidarScores::Gain& validation) const {
     return validation.after * validation.after <
            effect(candidate).may_leave() * validation.before * validation.before;
   }
@@ -131,7 +132,7 @@ class LidarTrace {
                         slice(fit.values, fit.values.size() - count, count));
   }
 
-  void add(std::size_t candidate, double p_value, const LidarScores::HeldOut& validation) {
+  void add(std::size_t candidate, double p_value, const LidarScores::Gain& validation) {
     accepted_.push_back(candidate);
     evidence_.push_back(
         {scores_.candidates()[candidate].effect, {}, {}, p_value, validation.before, validation.after});

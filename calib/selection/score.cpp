@@ -11,6 +11,7 @@
 #include "calib/math/linear_solve.hpp"
 #include "calib/selection/candidate_columns.hpp"
 #include "calib/selection/settings.hpp"
+#include "calib/validation/settings.hpp"
 
 namespace odomcalib::calib::selection {
 namespace {
@@ -26,7 +27,7 @@ struct Blocks {
 
 /// Blocks of kScoreBlock_s, none across a recording or a fold.
 Blocks blocks_of(std::span<const measurement::FitData> data) {
-  const std::vector<std::size_t> folds = folds_of(data);
+  const std::vector<std::size_t> folds = validation::folds_of(data);
   Blocks blocks;
   std::size_t k = 0;
   for (const measurement::FitData& d : data) {
@@ -145,7 +146,7 @@ class Projection {
 }  // namespace
 
 Eigen::VectorXd clipped(const Eigen::VectorXd& whitened) {
-  return whitened.cwiseMax(-settings::kClip).cwiseMin(settings::kClip);
+  return whitened.cwiseMax(-validation::settings::kClip).cwiseMin(validation::settings::kClip);
 }
 
 double chi_squared_tail(double statistic, std::size_t degrees) {
@@ -231,12 +232,13 @@ std::vector<double> ScoreTable::correlations(std::size_t candidate,
   return found;
 }
 
-FoldFlags ScoreTable::selected_without(const std::vector<std::size_t>& candidates, double level) const {
-  FoldFlags selected{};
+validation::FoldFlags ScoreTable::selected_without(const std::vector<std::size_t>& candidates,
+                                                   double level) const {
+  validation::FoldFlags selected{};
   for_each_basis(candidates, [&](std::size_t position, const Eigen::MatrixXd& basis) {
     if (basis.size() == 0) return;
     const std::size_t candidate = candidates[position];
-    for (std::size_t fold = 0; fold < kFolds; ++fold) {
+    for (std::size_t fold = 0; fold < validation::kFolds; ++fold) {
       Eigen::VectorXd score = Eigen::VectorXd::Zero(basis.cols());
       Eigen::MatrixXd gram = kRidge * Eigen::MatrixXd::Identity(basis.cols(), basis.cols());
       for (std::size_t b = 0; b + 1 < borders_.size(); ++b) {

@@ -9,7 +9,7 @@
 #include "calib/estimation/joint.hpp"
 #include "calib/selection/candidate.hpp"
 #include "calib/selection/fitted_model.hpp"
-#include "calib/selection/window_errors.hpp"
+#include "calib/validation/window_errors.hpp"
 
 namespace odomcalib::calib::selection {
 
@@ -48,7 +48,8 @@ class ScoreTable {
   [[nodiscard]] std::vector<double> correlations(std::size_t candidate,
                                                  const std::vector<std::size_t>& others) const;
   /// Whether any of these passes the family-wise level without the data of each fold.
-  [[nodiscard]] FoldFlags selected_without(const std::vector<std::size_t>& candidates, double level) const;
+  [[nodiscard]] validation::FoldFlags selected_without(const std::vector<std::size_t>& candidates,
+                                                       double level) const;
 
  private:
   void take(std::size_t candidate, const Eigen::MatrixXd& raw, const Eigen::MatrixXd& projected);

@@ -225,7 +225,7 @@ class Search {
   }
 
   /// Whether what lies outside each fold points to the candidate, in whichever of its shapes.
-  [[nodiscard]] FoldFlags selected_without_fold(std::size_t candidate) const {
+  [[nodiscard]] validation::FoldFlags selected_without_fold(std::size_t candidate) const {
     std::vector<std::size_t> shapes;
     for (std::size_t k = 0; k < candidates_.size(); ++k)
       if (candidates_[k].key == candidates_[candidate].key) shapes.push_back(k);
@@ -235,8 +235,9 @@ class Search {
   /// How the trial fails cross-validation; empty when it does not.
   /// @param settled the trial on its own noise then
   std::string failure(const Trial& trial, CrossValidation& validation, std::optional<Trial>& settled) {
-    FoldFlags selected = selected_without_fold(trial.candidate);
-    if (selected != all_folds() && !has(Rule::choice_held_out)) selected = all_folds();
+    validation::FoldFlags selected = selected_without_fold(trial.candidate);
+    if (selected != validation::all_folds() && !has(Rule::choice_held_out))
+      selected = validation::all_folds();
     std::string reason = objection(task_, basis(), trial.model, selected,
                                    largest_ratio(candidates_[trial.candidate]), validation);
     if (!reason.empty()) return reason;

@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "calib/estimation/fit.hpp"
-#include "calib/selection/fit_stages.hpp"
+#include "calib/stages/fit_stages.hpp"
 #include "tests/unit/calib/driven_recording.hpp"
 
 namespace odomcalib::test_support {
@@ -19,7 +19,7 @@ inline calib::measurement::Dataset rough_dataset(std::span<const Recording> reco
 }
 
 inline calib::estimation::Settling silent_settling() {
-  return calib::selection::settling(true, [](const std::string&, double) {});
+  return calib::stages::settling(true, [](const std::string&, double) {});
 }
 
 inline calib::estimation::Fit settled_fit(std::span<const Recording> recordings) {

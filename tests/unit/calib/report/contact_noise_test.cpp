@@ -18,10 +18,10 @@ TEST(ContactNoise, is_that_of_errors_that_were_not_fitted) {
   const selection::FittedModel model{{}, fit.result};
   // The fit stays what it is: only what was held out is farther off.
   const auto noise_of = [&](double heading) {
-    auto held_out = selection::held_out_errors(fit.dataset.data, {}, fit.result, fit.dataset.fixed());
+    auto held_out = validation::held_out_errors(fit.dataset.data, {}, fit.result, fit.dataset.fixed());
     std::mt19937 engine(test_support::kDriveSeed);
     std::normal_distribution<double> error(0.0, heading);
-    for (selection::HeldOutError& one : held_out) one.error(2) += error(engine);
+    for (validation::HeldOutError& one : held_out) one.error(2) += error(engine);
     return contact_noise(fit.dataset, model, held_out).value_or(odometry::IncrementNoise{})[2];
   };
   EXPECT_NEAR(noise_of(2e-2) / noise_of(1e-2), 2.0, 0.1);
@@ -31,7 +31,7 @@ TEST(ContactNoise, is_that_of_errors_that_were_not_fitted) {
 TEST(ContactNoise, is_none_without_a_trusted_pair) {
   const Recording recording = test_support::driven_recording({0.1, 0.05, 0.2});
   const estimation::Fit fit = test_support::settled_fit({&recording, 1});
-  const auto held_out = selection::held_out_errors(fit.dataset.data, {}, fit.result, fit.dataset.fixed());
+  const auto held_out = validation::held_out_errors(fit.dataset.data, {}, fit.result, fit.dataset.fixed());
   selection::FittedModel model{{}, fit.result};
   EXPECT_TRUE(contact_noise(fit.dataset, model, held_out));
   std::fill(model.fit.weights.begin(), model.fit.weights.end(), 0.0);

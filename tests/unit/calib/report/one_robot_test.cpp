@@ -22,10 +22,10 @@ std::vector<Recording> named_recordings() {
 }
 
 /// Two recordings of a robot with wheels of 0.15 m, of which the second differs in one parameter.
-selection::Homogeneity that_differ(Eigen::Index parameter, double difference, double sigmas) {
-  selection::OwnEstimate own{Eigen::VectorXd(6), Eigen::MatrixXd::Identity(6, 6) * 1e-8, 100.0};
+report::Homogeneity that_differ(Eigen::Index parameter, double difference, double sigmas) {
+  report::OwnEstimate own{Eigen::VectorXd(6), Eigen::MatrixXd::Identity(6, 6) * 1e-8, 100.0};
   own.value << 0.075, 0.075, 0.4, 0.1, 0.0, 0.0;
-  selection::Homogeneity found;
+  report::Homogeneity found;
   found.own = {own, own};
   found.sigmas = found.differences = Eigen::MatrixXd::Zero(2, 6);
   found.sigmas(1, parameter) = sigmas;

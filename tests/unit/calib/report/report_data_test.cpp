@@ -8,10 +8,10 @@
 
 #include "calib/report/contact_noise.hpp"
 #include "calib/report/report.hpp"
-#include "calib/selection/drive_error.hpp"
-#include "calib/selection/residual_trace.hpp"
-#include "calib/selection/settings.hpp"
+#include "calib/report/residual_trace.hpp"
 #include "calib/terms/catalogue.hpp"
+#include "calib/validation/drive_error.hpp"
+#include "calib/validation/settings.hpp"
 #include "calib/vehicle/step_context.hpp"
 #include "tests/unit/calib/driven_fit.hpp"
 
@@ -105,7 +105,7 @@ TEST(DriveErrors, before_is_what_the_wrong_dimensions_do_and_after_is_noise) {
   const unsigned seed = 11;
   const auto world = make_world({}, {}, seed);
   const estimation::FitResult fit = fitted(*world, {});
-  const auto errors = selection::drive_errors(world->data, kNominal, nullptr, {&fit, none_fixed({}), {}});
+  const auto errors = validation::drive_errors(world->data, kNominal, nullptr, {&fit, none_fixed({}), {}});
 
   const double mean = 0.5 * (kTruth.left_radius + kTruth.right_radius);
   const DriveError metre = named(errors, "straight_metre_length");
@@ -142,7 +142,7 @@ double error_at(const std::vector<ErrorGrowth>& growth, double way, std::optiona
 TEST(ErrorGrowth, grows_with_the_way_before_and_stays_small_after) {
   const auto world = make_world({}, {}, 11);
   const estimation::FitResult fit = fitted(*world, {});
-  const auto growth = selection::error_growth(world->data, kNominal, nullptr, {&fit, none_fixed({}), {}});
+  const auto growth = validation::error_growth(world->data, kNominal, nullptr, {&fit, none_fixed({}), {}});
   ASSERT_GE(growth.size(), 4U);
   for (std::size_t k = 0; k < growth.size(); ++k) {
     EXPECT_GE(growth[k].stretches, 4U);
@@ -152,7 +152,7 @@ TEST(ErrorGrowth, grows_with_the_way_before_and_stays_small_after) {
     EXPECT_GT(growth[k].way, k > 0 ? growth[k - 1].way : 0.0);
   }
   EXPECT_GT(error_at(growth, 2.0, &ErrorGrowth::before), 1.5 * error_at(growth, 0.5, &ErrorGrowth::before));
-  for (const auto& one : selection::error_growth(world->data, {}, nullptr, {&fit, none_fixed({}), {}}))
+  for (const auto& one : validation::error_growth(world->data, {}, nullptr, {&fit, none_fixed({}), {}}))
     EXPECT_FALSE(one.before.has_value()) << "no nominal values";
 }
 
@@ -160,7 +160,7 @@ TEST(DriveErrors, unknown_nominal_values_give_no_before) {
   const auto world = make_world({}, {}, 12);
   const estimation::FitResult fit = fitted(*world, {});
   for (const auto& error :
-       selection::drive_errors(world->data, {0.0, 0.0, 0.0, {}}, nullptr, {&fit, none_fixed({}), {}}))
+       validation::drive_errors(world->data, {0.0, 0.0, 0.0, {}}, nullptr, {&fit, none_fixed({}), {}}))
     EXPECT_FALSE(error.before.has_value()) << error.name;
 }
 
@@ -189,10 +189,10 @@ TEST(DriveErrors, what_a_fit_leaves_out_counts_where_a_map_confirms_it) {
   const estimation::FitResult fit = fitted(*world, {});
   ASSERT_GT(fit.discarded, 40U) << "seed 13";
   const auto over_ten_seconds = [&] {
-    return named(selection::drive_errors(world->data, kNominal, nullptr, {&fit, none_fixed({}), {}}),
+    return named(validation::drive_errors(world->data, kNominal, nullptr, {&fit, none_fixed({}), {}}),
                  "open_loop_10s_position");
   };
-  const auto without = selection::drive_errors(world->data, kNominal, nullptr, {&fit, none_fixed({}), {}});
+  const auto without = validation::drive_errors(world->data, kNominal, nullptr, {&fit, none_fixed({}), {}});
   EXPECT_FALSE(std::any_of(without.begin(), without.end(), [](const DriveError& error) {
     return error.name == "open_loop_10s_position" && error.after->value > 0.01;
   }));
@@ -204,7 +204,7 @@ TEST(DriveErrors, are_no_smaller_when_held_against_places) {
   const auto world = make_world({}, {}, 11);
   const estimation::FitResult fit = fitted(*world, {});
   const auto metre = [&] {
-    return named(selection::drive_errors(world->data, kNominal, nullptr, {&fit, none_fixed({}), {}}),
+    return named(validation::drive_errors(world->data, kNominal, nullptr, {&fit, none_fixed({}), {}}),
                  "straight_metre_length");
   };
   const DriveError by_matches = metre();
@@ -222,7 +222,7 @@ TEST(DriveErrors, too_short_a_recording_gives_no_figures) {
   cut.weights.resize(5);
   cut.whitened_residual = fit.whitened_residual.head(15).eval();
   cut.whitened_jacobian = fit.whitened_jacobian.topRows(15).eval();
-  EXPECT_TRUE(selection::drive_errors(world->data, kNominal, nullptr, {&cut, none_fixed({}), {}}).empty());
+  EXPECT_TRUE(validation::drive_errors(world->data, kNominal, nullptr, {&cut, none_fixed({}), {}}).empty());
 }
 
 /// With an effect the geometry alone is worse than everything that was found.
@@ -231,7 +231,7 @@ TEST(DriveErrors, effects_show_between_geometry_and_after) {
   const auto world = make_world(effects, {0.06, 0.06}, 14);
   const estimation::FitResult full = fitted(*world, effects);
   const estimation::FitResult plain = fitted(*world, {});
-  const selection::JudgedModel geometry{&plain, none_fixed({}), {}};
+  const validation::JudgedModel geometry{&plain, none_fixed({}), {}};
   const auto errors = drive_errors(world->data, kNominal, &geometry, {&full, none_fixed(effects), effects});
   const DriveError turn = named(errors, "open_loop_10s_heading");
   ASSERT_TRUE(turn.geometry && turn.after && turn.before);
@@ -260,7 +260,7 @@ TEST_P(Traces, show_the_variable_that_the_effect_acts_by_and_that_it_is_gone) {
   ASSERT_NE(effects.front(), nullptr);
   const auto world = make_world(effects, expected.values, 15);
   const auto traces =
-      selection::residual_traces(world->data, effects, fitted(*world, effects), none_fixed(effects));
+      report::residual_traces(world->data, effects, fitted(*world, effects), none_fixed(effects));
   ASSERT_EQ(traces.size(), 1U);
   EXPECT_THAT(traces[0].variable, ::testing::HasSubstr(expected.variable));
   EXPECT_GT(traces[0].explained, expected.explained);
@@ -280,8 +280,8 @@ INSTANTIATE_TEST_SUITE_P(effects, Traces,
 TEST(Trace, is_not_shown_of_an_effect_that_is_too_small_to_be_told) {
   const vehicle::EffectList effects = {terms::find_effect("time_offset"), terms::find_effect("scan_skew")};
   const auto world = make_world(effects, {0.03, 0.0, 0.0}, 15);
-  const auto traces = selection::residual_traces(world->data, effects, fitted(*world, effects),
-                                                 none_fixed(effects), {effects.front()});
+  const auto traces = report::residual_traces(world->data, effects, fitted(*world, effects),
+                                              none_fixed(effects), {effects.front()});
   ASSERT_EQ(traces.size(), 1U);
   EXPECT_EQ(traces.front().effect, "scan_skew");
 }
@@ -373,8 +373,8 @@ TEST(ReportData, counts_what_is_trusted_just_enough) {
         << "few enough to be shown one by one";
     return data.axes[0].std;
   };
-  EXPECT_GT(std_with(1.01 * selection::settings::kTrustedWeight), 0.1);
-  EXPECT_LT(std_with(0.99 * selection::settings::kTrustedWeight), 0.01);
+  EXPECT_GT(std_with(1.01 * validation::settings::kTrustedWeight), 0.1);
+  EXPECT_LT(std_with(0.99 * validation::settings::kTrustedWeight), 0.01);
 }
 
 TEST(ClassicalMethods, S3_11_rounds_and_shares_of_the_closed_form_are_those_asked_for) {

@@ -20,7 +20,7 @@ TEST(ScoreTable, is_of_the_candidates_as_they_were_when_it_was_made) {
   const FittedModel basis{{}, fit.value()};
   std::vector<Candidate> candidates = {named("turn_direction_asymmetry"), named("time_offset")};
   const ScoreTable table(task, basis, candidates);
-  FoldFlags all{};
+  validation::FoldFlags all{};
   all.fill(true);
   ASSERT_EQ(table.selected_without({0}, 0.001), all) << "seed " << kSeed;
   const std::vector<double> alike = table.correlations(0, {1});

@@ -1,0 +1,37 @@
+// Pairs of scans that no model in the search explains: a fit leaves them out, so that no score sees them.
+// Their common features say what the robot, the floor or a clock did there.
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "calib/estimation/joint.hpp"
+#include "calib/report/outlier_cause.hpp"
+#include "calib/vehicle/channel.hpp"
+
+namespace odomcalib::calib::report {
+
+struct OutlierTrace {
+  std::size_t outliers = 0;  ///< pairs beyond the limit of a fit
+  std::size_t pairs = 0;     ///< all
+  std::vector<vehicle::Covariate>
+      depends_on;                 ///< that single out these pairs, the best first; empty: none does
+  double p_value = 1.0;           ///< of the best of all covariates, by permutation
+  double begin = 0.0, end = 0.0;  ///< s, of what goes with time: when
+  OutlierCause cause;             ///< filled by cause_of_outliers
+};
+
+/// nullopt when so few pairs are left out that noise and single bad matches account for them. Neighbours
+/// share a scan, so that of two outliers in a row one counts.
+std::optional<OutlierTrace> trace_outliers(std::span<const measurement::FitData> data,
+                                           const estimation::FitResult& fit);
+
+/// One sentence for a person.
+std::string to_text(const OutlierTrace& trace);
+/// {"outliers", "pairs", "depends_on", "p_value", "placed", "confirmed", "farther", "turned_farther"}
+std::string to_json(const OutlierTrace& trace);
+
+}  // namespace odomcalib::calib::report

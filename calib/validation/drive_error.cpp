@@ -1,0 +1,212 @@
+#include "calib/validation/drive_error.hpp"
+
+#include <algorithm>
+#include <boost/math/distributions/chi_squared.hpp>
+#include <cmath>
+#include <map>
+#include <optional>
+
+#include "calib/math/bootstrap.hpp"
+#include "calib/terms/effects/reference_effect.hpp"
+#include "calib/validation/evaluation_window.hpp"
+#include "calib/validation/folds.hpp"
+#include "calib/validation/settings.hpp"
+
+namespace odomcalib::calib::validation {
+namespace {
+
+constexpr const char* kOpenLoopPosition = "open_loop_10s_position";
+
+constexpr unsigned kDriveErrorSeed = 20010823;
+
+/// Predicted minus measured motion of each evaluation window, in the base's frame at its begin.
+std::vector<math::Pose> errors_of(std::span<const measurement::FitData> data,
+                                  const std::vector<EvaluationWindow>& windows,
+                                  const std::vector<Eigen::VectorXd>& parameters,
+                                  const vehicle::EffectList& effects) {
+  std::vector<math::Pose> errors(windows.size());
+  for (std::size_t fold = 0; fold < kFolds; ++fold) {
+    for (std::size_t d = 0; d < data.size(); ++d) {
+      const auto trajectory = data[d].model->trajectory(vehicle::as_span(parameters[fold]), effects);
+      const measurement::PathOfWheels wheels = measurement::path_of_wheels(trajectory);
+      const math::Pose base_seen_from_sensor =
+          inverse(vehicle::to_base(vehicle::as_span(parameters[fold])).mount);
+      for (std::size_t k = 0; k < windows.size(); ++k) {
+        const EvaluationWindow& s = windows[k];
+        if (s.fold != fold || s.recording != d) continue;
+        const math::Pose told = between(trajectory.at(s.interval.begin), trajectory.at(s.interval.end));
+        const math::Pose motion = conjugate(measured_motion(s, data[d], wheels), base_seen_from_sensor);
+        errors[k] = {told.x - motion.x, told.y - motion.y, math::wrap_angle(told.yaw - motion.yaw)};
+      }
+    }
+  }
+  return errors;
+}
+
+/// The number of a pose error that counts, and its variance by the noise model.
+enum class Part { along, position, heading };
+
+double square_of(Part part, const math::Pose& e) {
+  if (part == Part::along) return e.x * e.x;
+  return part == Part::heading ? e.yaw * e.yaw : e.x * e.x + e.y * e.y;
+}
+
+double variance_of(Part part, const Eigen::Matrix3d& c) {
+  if (part == Part::along) return c(0, 0);
+  return part == Part::heading ? c(2, 2) : c(0, 0) + c(1, 1);
+}
+
+/// Blocks too few to be drawn from: as of so many independent errors with a normal distribution.
+Bounded of_few(double root, std::size_t blocks) {
+  const auto freedom = static_cast<double>(blocks);
+  const boost::math::chi_squared squares(freedom);
+  return {root, root * std::sqrt(freedom / quantile(squares, 0.975)),
+          root * std::sqrt(freedom / quantile(squares, 0.025))};
+}
+
+Bounded bounded(Part part, const std::vector<EvaluationWindow>& windows,
+                const std::vector<math::Pose>& errors) {
+  std::map<std::size_t, math::RatioOfSums> by_block;
+  math::RatioOfSums total;
+  for (std::size_t k = 0; k < windows.size(); ++k) {
+    const math::RatioOfSums one{square_of(part, errors[k]), windows[k].amount * windows[k].amount};
+    by_block[windows[k].block] += one;
+    total += one;
+  }
+  if (by_block.size() < settings::kFewestBlocks) return of_few(total.root(), by_block.size());
+  const math::BootstrapInterval interval = bootstrap_root(by_block, kDriveErrorSeed);
+  return {total.root(), interval.lower, interval.upper};
+}
+
+/// Over the windows as they are, whatever their amount.
+double rms_position(const std::vector<math::Pose>& errors) {
+  double sum = 0.0;
+  for (const math::Pose& e : errors) sum += square_of(Part::position, e);
+  return std::sqrt(sum / static_cast<double>(errors.size()));
+}
+
+double mean_amount(const std::vector<EvaluationWindow>& windows) {
+  double sum = 0.0;
+  for (const EvaluationWindow& one : windows) sum += one.amount;
+  return sum / static_cast<double>(windows.size());
+}
+
+double noise_floor(Part part, const std::vector<EvaluationWindow>& windows) {
+  math::RatioOfSums sums;
+  for (const EvaluationWindow& s : windows)
+    sums += {std::max(variance_of(part, s.covariance), 0.0), s.amount * s.amount};
+  return sums.root();
+}
+
+class Judge {
+ public:
+  Judge(std::span<const measurement::FitData> data, const wheels::BaseParameters& nominal,
+        const JudgedModel* geometry, const JudgedModel& full)
+      : data_(data), full_(full), folds_(folds_of(data)) {
+    full_parameters_ = by_fold(full);
+    if (nominal.left_radius > 0.0 && nominal.right_radius > 0.0 && nominal.track_width > 0.0)
+      nominal_parameters_.assign(kFolds, with_wheels(full.fit->parameters, full.effects, nominal));
+    if (geometry != nullptr)
+      for (const Eigen::VectorXd& p : by_fold(*geometry))
+        geometry_parameters_.push_back(
+            with_wheels(full.fit->parameters, full.effects, vehicle::to_base(vehicle::as_span(p))));
+  }
+
+  void add(WindowKind kind, const std::vector<std::pair<std::string, Part>>& names,
+           std::vector<DriveError>& out) const {
+    const auto windows =
+        find_windows(kind, data_, folds_, *full_.fit, measured_pairs(data_, trusted_pairs(*full_.fit)));
+    if (windows.size() < settings::kFewestOfAKind) return;
+    const auto before = errors(windows, nominal_parameters_);
+    const auto geometry = errors(windows, geometry_parameters_);
+    const auto after = errors(windows, full_parameters_);
+    const auto figure = [&](Part part, const std::vector<math::Pose>& e) {
+      return e.empty() ? std::nullopt : std::optional(bounded(part, windows, e));
+    };
+    for (const auto& [name, part] : names)
+      out.push_back({name, part == Part::heading ? "rad" : "m", windows.size(), figure(part, before),
+                     figure(part, geometry), figure(part, after), noise_floor(part, windows)});
+  }
+
+  [[nodiscard]] std::optional<ErrorGrowth> over(double way) const {
+    const auto windows =
+        find_windows_of_way(way, data_, folds_, *full_.fit, measured_pairs(data_, trusted_pairs(*full_.fit)));
+    if (windows.size() < settings::kFewestOfAKind) return std::nullopt;
+    const auto figure = [&](const std::vector<Eigen::VectorXd>& parameters) {
+      const auto all = errors(windows, parameters);
+      return all.empty() ? std::nullopt : std::optional(rms_position(all));
+    };
+    return ErrorGrowth{mean_amount(windows), windows.size(), figure(nominal_parameters_),
+                       figure(geometry_parameters_), figure(full_parameters_)};
+  }
+
+ private:
+  /// Empty without parameters.
+  [[nodiscard]] std::vector<math::Pose> errors(const std::vector<EvaluationWindow>& windows,
+                                               const std::vector<Eigen::VectorXd>& parameters) const {
+    if (parameters.empty()) return {};
+    return errors_of(data_, windows, parameters, full_.effects);
+  }
+
+  [[nodiscard]] std::vector<Eigen::VectorXd> by_fold(const JudgedModel& model) const {
+    std::vector<Eigen::VectorXd> parameters;
+    for (std::size_t fold = 0; fold < kFolds; ++fold)
+      parameters.push_back(without_fold(*model.fit, folds_, fold, model.fixed));
+    return parameters;
+  }
+
+  std::span<const measurement::FitData> data_;
+  const JudgedModel& full_;
+  std::vector<std::size_t> folds_;
+  std::vector<Eigen::VectorXd> nominal_parameters_, geometry_parameters_, full_parameters_;  ///< by fold
+};
+
+}  // namespace
+
+Eigen::VectorXd with_wheels(const Eigen::VectorXd& full, const vehicle::EffectList& effects,
+                            const wheels::BaseParameters& base) {
+  Eigen::VectorXd parameters = full;
+  parameters(vehicle::kLeftRadius) = base.left_radius;
+  parameters(vehicle::kRightRadius) = base.right_radius;
+  parameters(vehicle::kTrackWidth) = base.track_width;
+  Eigen::Index index = vehicle::kBaseCount;
+  for (const auto& effect : effects) {
+    const bool kept = terms::concerns_reference(*effect);
+    for (const vehicle::EffectParameter& parameter : effect->parameters()) {
+      if (!kept) parameters(index) = parameter.start;
+      ++index;
+    }
+  }
+  return parameters;
+}
+
+std::vector<DriveError> drive_errors(std::span<const measurement::FitData> data,
+                                     const wheels::BaseParameters& nominal, const JudgedModel* geometry,
+                                     const JudgedModel& full) {
+  const Judge judge(data, nominal, geometry, full);
+  std::vector<DriveError> errors;
+  judge.add(WindowKind::straight,
+            {{"straight_metre_length", Part::along}, {"straight_metre_heading", Part::heading}}, errors);
+  judge.add(WindowKind::turn, {{"full_turn_heading", Part::heading}}, errors);
+  judge.add(WindowKind::open_loop,
+            {{kOpenLoopPosition, Part::position}, {"open_loop_10s_heading", Part::heading}}, errors);
+  return errors;
+}
+
+std::vector<ErrorGrowth> error_growth(std::span<const measurement::FitData> data,
+                                      const wheels::BaseParameters& nominal, const JudgedModel* geometry,
+                                      const JudgedModel& full) {
+  const Judge judge(data, nominal, geometry, full);
+  std::vector<ErrorGrowth> growth;
+  for (const double way : settings::kWays_m)
+    if (const auto one = judge.over(way)) growth.push_back(*one);
+  return growth;
+}
+
+const DriveError* open_loop_position(const std::vector<DriveError>& errors) {
+  const auto found = std::find_if(errors.begin(), errors.end(),
+                                  [](const DriveError& error) { return error.name == kOpenLoopPosition; });
+  return found == errors.end() ? nullptr : &*found;
+}
+
+}  // namespace odomcalib::calib::validation
