@@ -17,16 +17,11 @@ namespace odomcalib::calib::ingest::settings {
 inline constexpr double kShortestInterval_s = 2e-3, kLongestInterval_s = 1.0;
 /// s, of scans that come faster than any head turns. Chosen: the fastest 2D lidars send 100 scans a second.
 inline constexpr double kFastestScans_s = 3e-3;
-/// Share of samples with the stamp of the one before, of stamps that have lost their last digits. Chosen: of
-/// a stream that two programs recorded together half of the samples repeat themselves, in stamp and value.
-inline constexpr double kRepeatedShare = 0.6;
 /// s, between neighbouring samples of one stream: their clock was set. Chosen: twelve days, which no
 /// recording pauses for.
 inline constexpr double kClockSet_s = 1e6;
 /// Times the usual step, of one that is unlike all others. Chosen.
 inline constexpr double kUnlikeOthers = 1e3;
-/// s since 1970, of dates that a clock which was set shows: the year 2001. Chosen.
-inline constexpr double kEarliestDate_s = 1e9;
 /// Time that all beams of a scan take over the time from scan to scan: no head sends a scan before the one
 /// before it ends. Chosen: half a turn is left to uneven stamps.
 inline constexpr double kLongestSweep = 1.5;

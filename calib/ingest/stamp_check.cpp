@@ -20,7 +20,7 @@ std::optional<Error> lost_digits(const Recording& recording, Form form) {
   const std::size_t repeated = left_out(recording, form, kRepeatedStamp);
   const std::size_t kept = stamps_of(recording, form).size();
   const auto all = static_cast<double>(kept + repeated);
-  if (!(static_cast<double>(repeated) > settings::kRepeatedShare * all)) return std::nullopt;
+  if (!(static_cast<double>(repeated) > kRepeatedShare * all)) return std::nullopt;
   const std::string many = many_of(form);
   if (kept < 2)
     return Error{ErrorCode::format,
@@ -42,8 +42,7 @@ std::optional<Error> clock_was_set(const Recording& recording, Form form) {
   for (std::size_t k = 1; k < stamps.size(); ++k) {
     const double step = stamps[k] - stamps[k - 1];
     if (step < std::max(settings::kClockSet_s, settings::kUnlikeOthers * usual)) continue;
-    const bool since_boot =
-        stamps[k - 1] < settings::kEarliestDate_s && stamps[k] >= settings::kEarliestDate_s;
+    const bool since_boot = stamps[k - 1] < kEarliestDate_s && stamps[k] >= kEarliestDate_s;
     return Error{
         ErrorCode::format,
         "the times of the " + std::string(many_of(form)) + " jump by " + math::significant(step, 4) +

@@ -13,16 +13,14 @@ struct Unit {
 constexpr std::array kUnits = {Unit{"milliseconds since 1970", 1e3}, Unit{"microseconds since 1970", 1e6},
                                Unit{"nanoseconds since 1970", 1e9}};
 
-// The years 2001 to 2065. Neighbouring units are a factor of 1000 apart, so that no stamp fits two of them.
-constexpr double kEarliestDate = 1e9, kLatestDate = 3e9;  // s since 1970
-
 constexpr const char* kBegin = "time stamp in ";
 
 }  // namespace
 
 const char* unit_of_date(double stamp) {
   for (const Unit& unit : kUnits)
-    if (stamp >= kEarliestDate * unit.per_second && stamp <= kLatestDate * unit.per_second) return unit.name;
+    if (stamp >= kEarliestDate_s * unit.per_second && stamp <= kLatestDate_s * unit.per_second)
+      return unit.name;
   return nullptr;
 }
 

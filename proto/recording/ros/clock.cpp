@@ -5,6 +5,8 @@
 #include <map>
 #include <vector>
 
+#include "proto/recording/stamp_units.hpp"
+
 namespace odomcalib::ros {
 namespace {
 
@@ -14,10 +16,6 @@ namespace {
 constexpr std::int64_t kClocksApart_ns = 1'000'000'000;
 constexpr std::int64_t kStampSecond = 1'000'000'000;  // ns
 
-// Share of messages with the stamp of the one before but another value, of stamps that have lost their last
-// digits. Chosen: of a stream that two programs recorded together half of the messages repeat themselves. The
-// same as calib judges samples by.
-constexpr double kRepeatedShare = 0.6;
 // Fewest messages that are judged by their stamps. Chosen.
 constexpr std::size_t kFewestStamps = 10;
 
