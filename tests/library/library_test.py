@@ -2,7 +2,7 @@
 """The installed library: what it needs and shows, and programs outside of the tree that use it.
 
 Usage: library_test.py WHAT SOURCE BUILD PREFIX WORK
-WHAT: needs (libraries and symbols), consumer (a CMake project in C and C++, pkg-config), python, step (odometry as source),
+WHAT: needs (libraries and symbols), abi (types and functions that programs were compiled for), consumer (a CMake project in C and C++, pkg-config), python, step (odometry as source),
 docs (the script of the page for users), ros (the node for ROS 1), lcm
 """
 
@@ -116,6 +116,37 @@ def test_needs():
     listed = set(re.findall(r"^ (odomcalib_\w+)@", symbols, re.M))
     check(listed == declared, f"the package's symbols are those: {listed ^ declared}")
     check(shown - {"ODOMCALIB_0"} == declared, f"it shows what the header declares: {shown ^ declared}")
+
+
+def abi_of(library):
+    """What programs see of a library, as text: functions and types of the C interface, without places in the source."""
+    text = run("abidw", "--no-corpus-path", "--no-comp-dir-path", "--exported-interfaces-only", "--drop-private-types",
+               "--headers-dir", SOURCE / "calib/library/include", library)
+    return re.sub(r" (filepath|path|line|column)='[^']*'", "", text)
+
+
+def abi_changes(before, after):
+    """What abidiff has against a library in place of another, but for functions that are new; empty where it has nothing."""
+    done = subprocess.run(["abidiff", "--no-added-syms", before, after], capture_output=True, text=True, check=False)
+    return done.stdout + done.stderr if done.returncode != 0 else ""
+
+
+def test_abi():
+    """Programs that were linked with a library of this soname run with this one."""
+    library, baseline = library_in(installed()), SOURCE / "debian/libodomcalib0.abi"
+    now = WORK / "now.abi"
+    now.write_text(abi_of(library))
+    check(not abi_changes(baseline, now), "programs that were built before still run; a change that they do not survive needs a new soname, "
+          f"a new function a new {baseline.name} (a copy of {now}):\n{abi_changes(baseline, now)}")
+    # The comparison sees what it is there for.
+    text = now.read_text()
+    for what, pattern, other in (("a member that moves", "layout-offset-in-bits='64'", "layout-offset-in-bits='32'"),
+                                 ("a structure of another size", "size-in-bits='192' is-struct", "size-in-bits='256' is-struct"),
+                                 ("a function that goes", "odomcalib_odometry_stamp", "odomcalib_odometry_time")):
+        check(pattern in text, f"{what} is looked for in what is there")
+        changed = WORK / "changed.abi"
+        changed.write_text(text.replace(pattern, other))
+        check(abi_changes(now, changed), f"{what} is noticed")
 
 
 def test_consumer():
@@ -418,7 +449,8 @@ def test_lcm():
 
 
 def main():
-    tests = {"needs": test_needs, "consumer": test_consumer, "python": test_python, "step": test_step, "docs": test_docs, "ros": test_ros, "lcm": test_lcm}
+    tests = {"needs": test_needs, "abi": test_abi, "consumer": test_consumer, "python": test_python, "step": test_step,
+             "docs": test_docs, "ros": test_ros, "lcm": test_lcm}
     WORK.mkdir(parents=True, exist_ok=True)
     tests[sys.argv[1]]()
     print(f"{sys.argv[1]}: as it should be")

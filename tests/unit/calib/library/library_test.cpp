@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <filesystem>
 #include <iostream>
 #include <limits>
@@ -22,6 +23,7 @@
 #include "calib/terms/fitted_smooth_term.hpp"
 #include "calib/terms/lidar_effect.hpp"
 #include "proto/calibration/calibration.hpp"
+#include "tests/temporary_folder.hpp"
 #include "tests/unit/calib/library/counted_memory.hpp"
 #include "tests/unit/calib/shared_data.hpp"
 #include "tests/unit/calib/some_drive.hpp"
@@ -175,7 +177,7 @@ TEST(Library, poses_are_those_of_the_program_to_the_last_bit_on_real_recordings)
   }
 }
 
-/// Those that tests/regression/compare solves.
+/// Real ones that tests/regression/compare solves.
 std::vector<std::filesystem::path> all_real_recordings() {
   std::vector<std::filesystem::path> files;
   for (const auto& entry : std::filesystem::recursive_directory_iterator(test_support::shared_data(""))) {
@@ -201,6 +203,23 @@ TEST(Library, poses_are_those_of_the_program_to_the_last_bit_on_every_real_recor
     if (!read.ok() || read.value().ticks.empty()) continue;
     ++count;
     expect_equal(read.value(), with_all_effects(), file.string());
+  }
+  std::cout << count << " recordings\n";
+  EXPECT_GE(count, 30U);
+}
+
+TEST(Library, poses_are_those_of_the_program_to_the_last_bit_on_every_simulated_recording) {
+  if (!test_support::long_tests()) GTEST_SKIP() << "takes minutes: ./test.sh --long";
+  const TemporaryFolder folder;
+  ASSERT_EQ(std::system((ODOMCALIB_REGRESSION " --simulate " ODOMCALIB_PROGRAMS " --work " +
+                         folder.path().string() + " > " + (folder / "log").string())
+                            .c_str()),
+            0);
+  std::size_t count = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(folder.path())) {
+    if (entry.path().extension() != ".gz") continue;
+    ++count;
+    expect_equal(read_recording(entry.path()).value(), with_all_effects(), entry.path().filename().string());
   }
   std::cout << count << " recordings\n";
   EXPECT_GE(count, 30U);
