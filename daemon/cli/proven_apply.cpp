@@ -26,12 +26,6 @@ Error unseen_drive() {
           "drive where it sees walls on all sides, not along a corridor"};
 }
 
-ordered_json json_of(const DriveErrors& errors) {
-  ordered_json body = ordered_json::object();
-  for (const DriveFigure& one : drive_figures()) body[one.name] = errors.*one.value;
-  return body;
-}
-
 std::string name_of(ProvenApply::End end) {
   constexpr std::array kNames = {"stored", "not_stored", "taken_back", "in_doubt"};
   return kNames.at(static_cast<std::size_t>(end));
@@ -136,8 +130,8 @@ ProvenApply apply_and_prove(const RunMethod& run, const RunMethod& always, const
 }
 
 ordered_json to_json(const ProvenApply& applied) {
-  ordered_json body = {{"outcome", name_of(applied.end)}, {"before", json_of(applied.before)}};
-  body["after"] = applied.after ? json_of(*applied.after) : ordered_json();
+  ordered_json body = {{"outcome", name_of(applied.end)}, {"before", json_of<ordered_json>(applied.before)}};
+  body["after"] = json_of<ordered_json>(applied.after);
   body["error"] = applied.error ? to_json(*applied.error) : ordered_json();
   return body;
 }

@@ -2,6 +2,7 @@
 
 #include <vector>
 
+#include "proto/calibration/report_data.hpp"
 #include "proto/file_bytes.hpp"
 
 namespace odomcalib {
@@ -10,6 +11,11 @@ namespace {
 constexpr const char* kNone = "none";
 
 }  // namespace
+
+std::string text_in_force(Calibration calibration) {
+  calibration.extensions.erase(kPictureMember);
+  return to_json(calibration);
+}
 
 std::filesystem::path CalibrationInForce::file_of(const std::string& id) const {
   return announced_ / (id + ".json");

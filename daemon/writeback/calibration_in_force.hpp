@@ -6,9 +6,14 @@
 #include <optional>
 #include <string>
 
+#include "proto/calibration/calibration.hpp"
 #include "proto/result.hpp"
 
 namespace odomcalib {
+
+/// JSON text of a calibration as it is applied: without the points of the report's figures, because it is
+/// journaled and read again and again.
+std::string text_in_force(Calibration calibration);
 
 /// A write-back first announces the calibration that comes with it, and journals the id that it gets. Once it
 /// has committed that id is settled: at once, by the recovery that commits it, or at the next start.

@@ -137,4 +137,8 @@ std::optional<Error> DriveProof::lacking() const {
   return what ? std::optional(unproven(*what)) : std::nullopt;
 }
 
+DriveTrial DriveProof::trial() const {
+  return before_ ? DriveTrial{before_->all(), now_.all()} : DriveTrial{};
+}
+
 }  // namespace odomcalib

@@ -16,6 +16,8 @@ struct DriveErrors {
   double metre_length = 0.0;   ///< m per metre of a straight
   double metre_heading = 0.0;  ///< rad per metre of a straight
   double turn = 0.0;           ///< rad per full turn on the spot
+
+  bool operator==(const DriveErrors&) const = default;
 };
 
 /// One of them as people and programs have it.
@@ -30,6 +32,33 @@ struct DriveFigure {
 
 /// All of DriveErrors.
 std::span<const DriveFigure> drive_figures();
+
+/// An object with drive_figures() in SI units; null: not known.
+template <typename Json>
+Json json_of(const std::optional<DriveErrors>& errors) {
+  if (!errors) return nullptr;
+  Json body = Json::object();
+  for (const DriveFigure& one : drive_figures()) body[one.name] = (*errors).*one.value;
+  return body;
+}
+/// nullopt: it is no such object.
+template <typename Json>
+std::optional<DriveErrors> drive_errors_from(const Json& body) {
+  DriveErrors errors;
+  for (const DriveFigure& one : drive_figures()) {
+    if (!body.is_object() || !body.contains(one.name) || !body[one.name].is_number()) return std::nullopt;
+    errors.*one.value = body[one.name].template get<double>();
+  }
+  return errors;
+}
+
+/// Errors of the drives before and after a write; nullopt: not driven, or not seen by the lidar.
+struct DriveTrial {
+  std::optional<DriveErrors> before, after;
+
+  [[nodiscard]] bool is_empty() const { return !before && !after; }
+  bool operator==(const DriveTrial&) const = default;
+};
 
 /// The errors of the newest straight and the newest turn on the spot.
 class DrivenErrors {
@@ -63,6 +92,8 @@ class DriveProof {
   void forget();
   /// Why the values that wait are not proven: nothing was driven with them or before them, or it is worse.
   [[nodiscard]] std::optional<Error> lacking() const;
+  /// Errors of the drives before and with the values that wait; empty: none wait.
+  [[nodiscard]] DriveTrial trial() const;
 
  private:
   DrivenErrors now_;

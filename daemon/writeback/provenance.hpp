@@ -7,6 +7,8 @@
 #include <optional>
 #include <string>
 
+#include "daemon/writeback/drive_proof.hpp"
+
 namespace odomcalib {
 
 struct Provenance {
@@ -17,6 +19,9 @@ struct Provenance {
   std::string
       restores;         ///< of a rollback: entry whose former values it restores; empty: another controller's
   bool proven = false;  ///< a motion has shown odometry to be no worse with these values
+  std::string robot_id;  ///< as the configuration named the robot; empty: it did not, or an earlier version
+  std::string calibration_sha256;  ///< of an apply: of text_in_force(); empty: none, or an earlier version
+  DriveTrial trial;                ///< drives that were to prove the values; empty: none
 
   bool operator==(const Provenance&) const = default;
 };
@@ -30,6 +35,10 @@ void write_provenance(const Provenance& from, Json& body) {
   body["nominal_from"] = from.nominal_from;
   body["restores"] = from.restores;
   body["proven"] = from.proven;
+  body["robot_id"] = from.robot_id;
+  body["calibration_sha256"] = from.calibration_sha256;
+  if (from.trial.is_empty()) return;
+  body["trial"] = {{"before", json_of<Json>(from.trial.before)}, {"after", json_of<Json>(from.trial.after)}};
 }
 
 /// Nothing is known of earlier versions. Throws what Json throws for members of another type.
@@ -43,6 +52,11 @@ Provenance read_provenance(const Json& body) {
   out.nominal_from = body.value("nominal_from", out.nominal_from);
   out.restores = body.value("restores", "");
   out.proven = body.value("proven", false);
+  out.robot_id = body.value("robot_id", "");
+  out.calibration_sha256 = body.value("calibration_sha256", "");
+  const Json trial = body.value("trial", Json::object());
+  out.trial = {drive_errors_from(trial.value("before", Json())),
+               drive_errors_from(trial.value("after", Json()))};
   return out;
 }
 

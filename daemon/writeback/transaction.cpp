@@ -140,10 +140,11 @@ Result<void> Transaction::write(const std::string& label, const ParameterMap& va
   return {};
 }
 
-Result<void> Transaction::conclude(const Result<void>& proof) {
+Result<void> Transaction::conclude(const Result<void>& proof, const DriveTrial& trial) {
   if (!proving())
     return Error{ErrorCode::refused, "no values wait for a proof", "write-back", "odomcalibctl params get"};
   proof_ = proof;
+  report_.origin.trial = trial;
   return {};
 }
 

@@ -58,7 +58,8 @@ class Transaction {
   /// New values wait for their proof: there was a report of them, and there will be one of their end.
   [[nodiscard]] bool proving() const { return phase_ == Phase::proving && !proof_; }
   /// Ends that: a value stores them, an error says why the old ones come back. Error: refused, none wait.
-  Result<void> conclude(const Result<void>& proof);
+  /// @param trial is kept with what becomes of them
+  Result<void> conclude(const Result<void>& proof, const DriveTrial& trial = {});
 
   /// Call every few ms.
   void step(drivers::Controller& controller, double now, std::int64_t wall_us);

@@ -1,8 +1,10 @@
 // New values that wait in the controller's RAM while a motion proves them: they are stored when that is asked
 // for, and in every other case the old ones come back. The real driver on the simulated drive, in virtual
 // time.
+#include "daemon/writeback/calibration_in_force.hpp"
 #include "daemon/writeback/history.hpp"
 #include "daemon/writeback/journal.hpp"
+#include "proto/file_bytes.hpp"
 #include "tests/integration/service_loop.hpp"
 
 namespace odomcalib::proof_test {
@@ -68,6 +70,10 @@ class ServiceProof : public ServiceLoop {
     EXPECT_EQ(history()[0].outcome, "rolled_back");
     EXPECT_EQ(status()["calibrated"], false);
   }
+  /// Digest of a calibration as the history has it, whatever its layout.
+  [[nodiscard]] static std::string digest_of(const std::string& text) {
+    return sha256_hex(text_in_force(calibration_from_json(text, "history").value()));
+  }
   [[nodiscard]] double track_in_force() const { return status()["robot"]["track_width"].get<double>(); }
   [[nodiscard]] std::vector<HistoryEntry> history() const {
     return History(folder_ / "state" / "history").entries();
@@ -89,7 +95,11 @@ TEST_F(ServiceProof, new_values_are_driven_with_and_then_stored) {
   EXPECT_EQ(stored.error, "") << stored.parameters;
   EXPECT_EQ(robot_->node().geometry_stored(), kNewRaw);
   EXPECT_EQ(robot_->node().store_count(), 1U);
-  EXPECT_EQ(history().size(), 1U);
+  ASSERT_EQ(history().size(), 1U);
+  const Provenance origin = history()[0].origin;
+  EXPECT_TRUE(origin.trial.before && origin.trial.after) << "both drives";
+  ASSERT_TRUE(history()[0].calibration);
+  EXPECT_EQ(origin.calibration_sha256, digest_of(*history()[0].calibration));
   EXPECT_EQ(status()["calibrated"], true);
 }
 
@@ -104,6 +114,17 @@ TEST_F(ServiceProof, what_is_discarded_leaves_the_old_values) {
     EXPECT_TRUE(holds_old()) << method;
   }
   EXPECT_EQ(history().size(), 2U);
+}
+
+TEST_F(ServiceProof, what_was_driven_before_they_went_back_is_kept) {
+  drive();
+  write_unproven();
+  drive();
+  ASSERT_EQ(call("Discard").error, "");
+  ASSERT_EQ(history().size(), 1U);
+  EXPECT_TRUE(history()[0].origin.trial.before && history()[0].origin.trial.after);
+  const json entries = json::parse(call("History").parameters)["entries"];
+  EXPECT_GE(entries[0]["trial"]["after"]["full_turn_heading"].get<double>(), 0.0);
 }
 
 TEST_F(ServiceProof, the_values_go_with_the_connection_that_wrote_them) {

@@ -6,7 +6,8 @@
 #include "daemon/service/tasks/reading_task.hpp"
 #include "daemon/service/tasks/write_task.hpp"
 #include "daemon/service/write_gate.hpp"
-#include "proto/calibration/report_data.hpp"
+#include "daemon/writeback/calibration_in_force.hpp"
+#include "proto/file_bytes.hpp"
 
 namespace odomcalib {
 namespace {
@@ -82,6 +83,7 @@ Outcome begin_write(RobotParts& parts, const Caller& caller, Wish wish, bool dry
   if (!wish.asks.empty()) return not_vouched_for(wish.asks.front());
   Provenance origin = wish.origin;
   origin.user = parts.outbox.server.user_of(caller.client);
+  origin.robot_id = parts.drive.nominal().robot_id;
   origin.nominal = nominal.values;
   origin.nominal_from = nominal.from;
   const WriteTask::Order order{wish.label, rounded,    wish.calibration, wish.replaces_calibration,
@@ -134,9 +136,8 @@ Result<Wish> wish_of(Calibration calibration, const RobotParts& parts, bool repl
   if (robot.empty()) wish.asks.push_back(whose_robot(calibration));
   for (const auto* name : {"left_wheel_diameter", "right_wheel_diameter", "track_width"})
     if (const auto value = calibration.parameter(name)) wish.values[name] = *value;
-  // The calibration in force is kept, journaled and read again and again.
-  calibration.extensions.erase(kPictureMember);
-  wish.calibration = to_json(calibration);
+  wish.calibration = text_in_force(std::move(calibration));
+  wish.origin.calibration_sha256 = sha256_hex(*wish.calibration);
   return wish;
 }
 

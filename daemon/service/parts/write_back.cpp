@@ -48,11 +48,11 @@ void WriteBack::serve_proof(drivers::ControllerState state, bool may_begin, doub
   if (was_away_) take_back("the controller was away");
   if (now >= proof_ends_) take_back("the proof took too long");
   if (not_proven_ && may_begin && state == drivers::ControllerState::disabled)
-    (void)transaction.conclude(*not_proven_);
+    (void)transaction.conclude(*not_proven_, proof.trial());
 }
 
 Result<void> WriteBack::store() {
-  if (!not_proven_) return transaction.conclude({});
+  if (!not_proven_) return transaction.conclude({}, proof.trial());
   return *not_proven_;
 }
 

@@ -63,6 +63,19 @@ TEST(DriveProof, needs_a_straight_and_a_turn_before_and_after) {
   EXPECT_TRUE(DriveProof().lacking());
 }
 
+TEST(DriveProof, tells_what_was_driven_for_the_values_that_wait) {
+  const DriveTrial trial = driven(0.02, 0.01).trial();
+  ASSERT_TRUE(trial.before && trial.after);
+  EXPECT_NEAR(trial.before->metre_length, 0.02, 1e-12);
+  EXPECT_NEAR(trial.after->metre_length, 0.01, 1e-12);
+  DriveProof none;
+  none.driven(straight(0.02));
+  none.driven(spin(0.02));
+  EXPECT_TRUE(none.trial().is_empty()) << "nothing waits";
+  none.other_values();
+  EXPECT_TRUE(none.trial().before && !none.trial().after);
+}
+
 TEST(DriveProof, what_the_lidar_did_not_see_whole_is_none) {
   DriveProof proof = driven(0.02, 0.01);
   ordered_json unseen = straight(0.5);

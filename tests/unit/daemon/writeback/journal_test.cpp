@@ -314,6 +314,9 @@ Provenance some_provenance() {
   origin.nominal_from = {{"track_width", "robot.track_width of odomcalib.toml"}};
   origin.restores = "0003";
   origin.proven = true;
+  origin.robot_id = "carrier-17";
+  origin.calibration_sha256 = sha256_hex("a calibration");
+  origin.trial = {DriveErrors{0.02, 0.01, 0.1}, std::nullopt};
   return origin;
 }
 

@@ -53,6 +53,17 @@ TEST_F(WaitingForProof, what_is_not_proven_goes_back_without_a_store) {
   EXPECT_FALSE(journal.unfinished());
 }
 
+// Whatever becomes of the values: the figures are why.
+TEST_F(WaitingForProof, what_was_driven_for_it_is_kept_with_its_end) {
+  const DriveTrial trial{DriveErrors{0.02, 0.01, 0.1}, DriveErrors{0.001, 0.0, 0.01}};
+  for (const Result<void>& proof : {Result<void>(kWorse), Result<void>()}) {
+    write_unproven();
+    ASSERT_TRUE(transaction.conclude(proof, trial).ok());
+    EXPECT_EQ(finish().origin.trial, trial);
+    EXPECT_EQ(journal.last()->origin.trial, trial);
+  }
+}
+
 TEST_F(WaitingForProof, a_controller_that_stores_nothing_is_committed_or_restored_as_well) {
   controller.ram_only = true;
   write_unproven();
