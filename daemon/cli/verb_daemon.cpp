@@ -1,9 +1,7 @@
 // Verbs that ask the daemon and print its answer.
 #include <fmt/format.h>
-#include <pwd.h>
 
 #include <CLI/CLI.hpp>
-#include <cstdint>
 #include <iostream>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -15,6 +13,7 @@
 #include "daemon/cli/parameter_tables.hpp"
 #include "daemon/cli/status_document.hpp"
 #include "daemon/cli/verbs.hpp"
+#include "daemon/cli/write_backs.hpp"
 
 namespace odomcalib::cli {
 namespace {
@@ -41,15 +40,6 @@ int status_of(const ordered_json& body, const Question& question) {
   for (const auto& check : body.value(question.member, ordered_json::array()))
     if (check.value("outcome", "") == "fail") return kFailure;
   return kDone;
-}
-
-/// The daemon knows numbers only: a directory service may take its time.
-void name_users(ordered_json& entries) {
-  for (auto& entry : entries) {
-    if (!entry.is_object() || !entry.contains("user") || !entry["user"].is_number_unsigned()) continue;
-    const passwd* const user = getpwuid(entry["user"].get<uid_t>());
-    if (user != nullptr) entry["user_name"] = user->pw_name;
-  }
 }
 
 int ask(const Session& session, const Question& question) {
