@@ -323,7 +323,7 @@ Section verdict_section(const Calibration& calibration) {
   return section;
 }
 
-Document describe(const Calibration& calibration) {
+Document describe(const Calibration& calibration, const std::vector<Section>& written) {
   const ReportData data = report_data_of(calibration);
   Document document{
       headline(calibration.verdict), {verdict_section(calibration)}, tone_of(calibration.verdict)};
@@ -343,13 +343,15 @@ Document describe(const Calibration& calibration) {
                                    residual_shape_section(data),
                                    data_of(calibration),
                                    settings_section(calibration)};
+  sections.insert(sections.end() - 2, written.begin(), written.end());
   for (Section& section : sections)
     if (!section.lines.empty() || !section.table.rows.empty())
       document.sections.push_back(std::move(section));
   return document;
 }
 
-std::vector<std::pair<std::string, std::vector<Section>>> folded_sections(const Calibration& calibration) {
+std::vector<std::pair<std::string, std::vector<Section>>> folded_sections(
+    const Calibration& calibration, const std::vector<Section>& written) {
   const ReportData data = report_data_of(calibration);
   Section traces = traces_section(data);
   // The first figure stands on the first screen.
@@ -363,6 +365,7 @@ std::vector<std::pair<std::string, std::vector<Section>>> folded_sections(const 
       {"What is left: the residual", {residual_shape_section(data)}},
       {kDriveTitle, {path_section(data)}},
       {"What was not found", {not_found_section(data, true)}},
+      {written.empty() ? "" : written.front().title, written},
       {"Data and settings",
        {subject_section(calibration), data_of(calibration), settings_section(calibration)}},
       {"How to read this page", {reading_section()}}};

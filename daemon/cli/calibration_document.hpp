@@ -11,7 +11,8 @@
 namespace odomcalib::cli {
 
 /// All of it, as text.
-Document describe(const Calibration& calibration);
+/// @param written what write_back_sections() says of it
+Document describe(const Calibration& calibration, const std::vector<Section>& written = {});
 
 // Parts of it, for whoever shows less, or folds it.
 Section verdict_section(const Calibration& calibration);
@@ -20,7 +21,9 @@ Section gain_section(const Calibration& calibration);
 Section parameters_section(const Calibration& calibration);
 Section effects_section(const Calibration& calibration);
 /// Everything that a page does not show first, in groups with their titles; nothing empty.
-std::vector<std::pair<std::string, std::vector<Section>>> folded_sections(const Calibration& calibration);
+/// @param written as of describe()
+std::vector<std::pair<std::string, std::vector<Section>>> folded_sections(
+    const Calibration& calibration, const std::vector<Section>& written = {});
 
 /// "ACCEPTED", "ACCEPTED WITH WARNINGS" or "REFUSED".
 std::string headline(Verdict verdict);

@@ -60,9 +60,10 @@ std::string summary(const Calibration& calibration, bool legend, std::size_t wid
   return out;
 }
 
-void print_calibration(const Calibration& calibration, const Session& session) {
+void print_calibration(const Calibration& calibration, const Session& session,
+                       const std::vector<Section>& written) {
   if (session.verbose)
-    print_text(describe(calibration), session.legend);
+    print_text(describe(calibration, written), session.legend);
   else
     std::cout << summary(calibration, session.legend, text_columns());
 }

@@ -3,7 +3,9 @@
 
 #include <cstddef>
 #include <string>
+#include <vector>
 
+#include "daemon/cli/document.hpp"
 #include "daemon/cli/verbs.hpp"
 #include "proto/calibration/calibration.hpp"
 
@@ -16,6 +18,8 @@ namespace odomcalib::cli {
 std::string summary(const Calibration& calibration, bool legend, std::size_t width);
 
 /// The summary, or with --verbose everything, on standard output.
-void print_calibration(const Calibration& calibration, const Session& session);
+/// @param written what write_back_sections() says of it; no part of the summary
+void print_calibration(const Calibration& calibration, const Session& session,
+                       const std::vector<Section>& written = {});
 
 }  // namespace odomcalib::cli

@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <ctime>
 #include <nlohmann/json.hpp>
+#include <utility>
 
 #include "daemon/cli/display.hpp"
 
@@ -83,9 +84,48 @@ std::string action_of(const ordered_json& entry) {
 }
 
 std::string outcome_of(const ordered_json& entry) {
-  std::string outcome = entry.value("outcome", "");
+  std::string outcome = readable(entry.value("outcome", ""));
   if (outcome != "committed" || !entry.contains("proven")) return outcome;
   return outcome + (entry["proven"] == true ? ", proven" : ", unproven");
+}
+
+Table history_table(const ordered_json& entries) {
+  Table table{{"id", "when (UTC)", "by", "action", "outcome"}, {}};
+  for (const char* name : kQuantities) table.head.push_back(readable(name) + " mm");
+  for (const auto& entry : entries) {
+    table.rows.push_back({entry.value("id", ""), moment_of(entry.value("time", std::int64_t{0})),
+                          user_of(entry), action_of(entry), outcome_of(entry)});
+    for (const char* name : kQuantities) table.rows.back().push_back(change_of(entry, name));
+  }
+  return table;
+}
+
+bool is_committed(const ordered_json& entry) { return entry.value("outcome", "") == "committed"; }
+
+std::string sentence_of(const ordered_json& entry) {
+  const std::string user = user_of(entry);
+  std::string text =
+      fmt::format("This calibration was {} on {} UTC", is_committed(entry) ? "written" : "to be written",
+                  moment_of(entry.value("time", std::int64_t{0})));
+  if (user != "-") text += " by " + user;
+  return text + fmt::format(", entry {}: {}.", entry.value("id", ""), outcome_of(entry));
+}
+
+/// Sentences on the newest entry that wrote one calibration, and on what was written since.
+std::vector<std::string> written_lines(const ordered_json& entries, const std::string& sha256) {
+  const auto own = std::find_if(entries.begin(), entries.end(), [&](const auto& entry) {
+    return entry.value("calibration_sha256", "") == sha256;
+  });
+  if (own == entries.end())
+    return {"No entry names this calibration: these are other write-backs of its robot."};
+  std::vector<std::string> lines = {sentence_of(*own)};
+  std::string later;
+  for (auto entry = entries.begin(); entry != own; ++entry)
+    if (is_committed(*entry)) later += (later.empty() ? "" : ", ") + entry->value("id", "");
+  if (!later.empty()) lines.push_back("Other values were written since: " + later + ".");
+  if (is_committed(*own) && !own->value("proven", false))
+    lines.emplace_back("No drive compared odometry before and after: odomcalibctl calibrate --apply does.");
+  return lines;
 }
 
 // The values that were written, or would be, and those that they replace.
@@ -104,14 +144,52 @@ Document describe_parameters(const ordered_json& parameters) {
 }
 
 Document describe_history(const ordered_json& entries) {
-  Section section{"", {}, {{"id", "when (UTC)", "by", "action", "outcome"}, {}}};
-  for (const char* name : kQuantities) section.table.head.push_back(readable(name) + " mm");
+  return {"Write-backs, newest first", {{"", {}, history_table(entries)}}};
+}
+
+namespace {
+
+/// Those of all entries, below each other.
+Table trials_of(const ordered_json& entries) {
+  Table all;
   for (const auto& entry : entries) {
-    section.table.rows.push_back({entry.value("id", ""), moment_of(entry.value("time", std::int64_t{0})),
-                                  user_of(entry), action_of(entry), outcome_of(entry)});
-    for (const char* name : kQuantities) section.table.rows.back().push_back(change_of(entry, name));
+    const ordered_json trial = entry.value("trial", ordered_json::object());
+    const DriveTrial driven{drive_errors_from(trial.value("before", ordered_json())),
+                            drive_errors_from(trial.value("after", ordered_json()))};
+    if (driven.is_empty()) continue;
+    Table own = trial_table(driven);
+    own.head.insert(own.head.begin() + 1, "entry");
+    for (auto& row : own.rows) row.insert(row.begin() + 1, entry.value("id", ""));
+    all.head = own.head;
+    all.rows.insert(all.rows.end(), own.rows.begin(), own.rows.end());
   }
-  return {"Write-backs, newest first", {section}};
+  return all;
+}
+
+}  // namespace
+
+Table trial_table(const DriveTrial& trial) {
+  Table table{{"odometry off by", "before", "after", "unit"}, {}};
+  for (const DriveFigure& one : drive_figures()) {
+    const auto text = [&](const std::optional<DriveErrors>& errors) {
+      return errors ? fmt::format("{:.2f}", one.factor * (*errors).*one.value) : "-";
+    };
+    table.rows.push_back({one.words, text(trial.before), text(trial.after), one.unit});
+  }
+  return table;
+}
+
+std::vector<Section> write_back_sections(const ordered_json& entries, const std::string& sha256) {
+  if (entries.empty()) return {};
+  std::vector<Section> sections = {
+      {"Written to the controller", written_lines(entries, sha256), history_table(entries)}};
+  if (Table driven = trials_of(entries); !driven.rows.empty())
+    sections.push_back(
+        {"Trials: odometry against the lidar, driven with the values before an entry and with "
+         "those that it wrote",
+         {},
+         std::move(driven)});
+  return sections;
 }
 
 Document describe_write_back(const ordered_json& result) {

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "daemon/cli/output.hpp"
+#include "daemon/cli/parameter_tables.hpp"
 #include "proto/calibration/report_data.hpp"
 
 namespace odomcalib::cli {
@@ -140,15 +141,8 @@ Document describe(const ProvenApply& applied) {
   constexpr std::array kHeadlines = {"stored, and proven by a fresh motion", "not stored",
                                      "taken back, the old values are in force",
                                      "IN DOUBT: not proven, and what is in force was not seen"};
-  Section section{"", {}, {{"odometry off by", "before", "after", "unit"}, {}}};
-  for (const DriveFigure& one : drive_figures()) {
-    const auto text = [&](const DriveErrors& errors) {
-      return fmt::format("{:.2f}", one.factor * errors.*one.value);
-    };
-    section.table.rows.push_back(
-        {one.words, text(applied.before), applied.after ? text(*applied.after) : "-", one.unit});
-  }
-  return {kHeadlines.at(static_cast<std::size_t>(applied.end)), {section}};
+  return {kHeadlines.at(static_cast<std::size_t>(applied.end)),
+          {{"", {}, trial_table({applied.before, applied.after})}}};
 }
 
 }  // namespace odomcalib::cli

@@ -109,9 +109,9 @@ std::string first_screen(const Calibration& calibration, const ReportData& data)
       values_of(calibration));
 }
 
-std::string rest_of(const Calibration& calibration) {
+std::string rest_of(const Calibration& calibration, const std::vector<Section>& written) {
   std::string out = "<div class=\"rest\">\n";
-  for (const auto& [title, sections] : folded_sections(calibration)) {
+  for (const auto& [title, sections] : folded_sections(calibration, written)) {
     // Narrower columns would break the tables of fewer.
     const char* columns = sections.size() < 3 ? " wide" : "";
     out += fmt::format("<details><summary>{}</summary>\n<div class=\"fold{}\">\n", escaped(title), columns);
@@ -139,7 +139,7 @@ std::string subject_line(const Calibration& calibration) {
   return line;
 }
 
-std::string report_page(const Calibration& calibration) {
+std::string report_page(const Calibration& calibration, const std::vector<Section>& written) {
   const ReportData data = report_data_of(calibration);
   const std::string verdict = headline(calibration.verdict);
   const std::string gain = gain_sentence(calibration, data);
@@ -147,7 +147,7 @@ std::string report_page(const Calibration& calibration) {
       fmt::format("<header><h1 class=\"{}\">{}</h1><p>{}</p></header>\n",
                   class_of(tone_of(calibration.verdict)), verdict, escaped(subject_line(calibration)));
   if (!gain.empty()) body += fmt::format("<p class=\"lead\">{}</p>\n", escaped(gain));
-  body += first_screen(calibration, data) + rest_of(calibration);
+  body += first_screen(calibration, data) + rest_of(calibration, written);
   return page_of(verdict + ": " + subject_line(calibration), kReportStyle, body);
 }
 

@@ -13,26 +13,13 @@ namespace {
 
 using nlohmann::ordered_json;
 
+/// Its name is its id, whatever is in it.
 std::optional<HistoryEntry> entry_from(const std::filesystem::path& path) {
   const auto bytes = read_file_bytes(path);
   if (!bytes) return std::nullopt;
-  try {
-    const auto body = ordered_json::parse(bytes.value());
-    HistoryEntry entry;
-    entry.id = path.stem().string();
-    entry.time = body.at("time").get<std::int64_t>();
-    entry.action = body.at("action").get<std::string>();
-    entry.outcome = body.at("outcome").get<std::string>();
-    entry.before = body.at("before").get<std::map<std::string, double>>();
-    entry.after = body.at("after").get<std::map<std::string, double>>();
-    entry.device = body.value("device", "");
-    entry.origin = read_provenance(body);
-    if (body.contains("calibration") && body["calibration"].is_object())
-      entry.calibration = body["calibration"].dump();
-    return entry;
-  } catch (const ordered_json::exception&) {
-    return std::nullopt;
-  }
+  auto body = ordered_json::parse(bytes.value(), nullptr, false);
+  if (body.is_object()) body["id"] = path.stem().string();
+  return history_entry_from(body);
 }
 
 unsigned number_of(const std::string& id) {
@@ -69,6 +56,25 @@ std::string to_json(const HistoryEntry& entry, bool with_calibration) {
   if (with_calibration && entry.calibration)
     body["calibration"] = ordered_json::parse(*entry.calibration, nullptr, false);
   return body.dump(2, ' ', false, ordered_json::error_handler_t::replace);
+}
+
+std::optional<HistoryEntry> history_entry_from(const ordered_json& body) {
+  try {
+    HistoryEntry entry;
+    entry.id = body.at("id").get<std::string>();
+    entry.time = body.at("time").get<std::int64_t>();
+    entry.action = body.at("action").get<std::string>();
+    entry.outcome = body.at("outcome").get<std::string>();
+    entry.before = body.at("before").get<std::map<std::string, double>>();
+    entry.after = body.at("after").get<std::map<std::string, double>>();
+    entry.device = body.value("device", "");
+    entry.origin = read_provenance(body);
+    if (body.contains("calibration") && body["calibration"].is_object())
+      entry.calibration = body["calibration"].dump();
+    return entry;
+  } catch (const ordered_json::exception&) {
+    return std::nullopt;
+  }
 }
 
 std::vector<std::filesystem::path> History::files() const {

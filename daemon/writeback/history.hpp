@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <map>
+#include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
 #include <vector>
@@ -31,6 +32,9 @@ struct HistoryEntry {
 HistoryEntry entry_of(const JournalRecord& end);
 
 std::string to_json(const HistoryEntry& entry, bool with_calibration);
+
+/// Entry of a history from what to_json() made of it; nullopt: it is none.
+std::optional<HistoryEntry> history_entry_from(const nlohmann::ordered_json& body);
 
 class History {
  public:

@@ -5,6 +5,8 @@ or with --text whether their text fits a terminal.
 usage: tests/integration/live_verbs.py PROGRAMS SCHEMAS PROFILE [--text]"""
 
 import json
+import os
+import subprocess
 import sys
 
 from schemas import Schemas
@@ -77,11 +79,33 @@ def check_text(robot, verb, arguments, *_):
     return faults
 
 
+def check_report(robot):
+    """What was written and taken back, on page and terminal: by the service that answers, by what history printed, and by the state
+    folder. Where nobody answers, nothing is said."""
+    with open(robot.path("history.json"), "w", encoding="utf-8") as file:
+        file.write(robot.ctl("history", "--json").stdout)
+    faults, program = [], os.path.join(robot.programs, "odomcalibctl")
+    for source in (["--socket", "control"], ["--history", "history.json"], ["--history", "state"], ["--socket", "nobody"]):
+        done = subprocess.run([program, "report", "lengths.json", "--verbose", "--html", "page.html", *source], cwd=robot.folder,
+                              check=False, text=True, timeout=60, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+        if done.returncode != DONE or done.stderr:
+            faults.append("report %s: status %d: %s" % (source, done.returncode, done.stderr))
+        with open(robot.path("page.html"), encoding="utf-8") as file:
+            shown = {"page": file.read(), "terminal": done.stdout}
+        for where, text in shown.items():
+            found = [said in " ".join(text.split()) for said in ("Written to the controller", "This calibration was written on",
+                                                                 "Other values were written since: 0003.")]
+            if found != [source[1] != "nobody"] * 3:
+                faults.append("report %s, %s: %s" % (source, where, found))
+    return faults
+
+
 def main(programs, schema_folder, profile, text):
     schemas, faults = Schemas(schema_folder), []
     with SimulatedRobot(programs, profile, seed=3, hurry=True) as robot:
         for row in TABLE:
             faults += check_text(robot, *row) if text else check_call(robot, schemas, *row)
+        faults += check_report(robot) if text else []
         for name, schema in FILES if not text else []:
             with open(robot.path(name), encoding="utf-8") as file:
                 faults += schemas.faults(json.load(file), schema)

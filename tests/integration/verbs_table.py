@@ -54,6 +54,11 @@ TABLE = [
     ("report", "cal.json", DONE, "calibration"),
     ("report", "good.json", DONE, "calibration"),
     ("report", "drive.jsonl", FAILURE, "error"),
+    ("report", "before.json --html page.html --history history.json", DONE, "calibration"),
+    ("report", "before.json --html page.html --history drive.jsonl", FAILURE, "error"),
+    ("report", "before.json --html page.html --history " + ABSENT, FAILURE, "error"),
+    ("report", "before.json --html history.json --history history.json", USAGE, "error"),
+    ("report", "before.json --history history.json", USAGE, "error"),
     ("compare", "before.json after.json", DONE, "comparison"),
     ("compare", "before.json after.json --until 5mm/m --csv values.csv --html values.html", DONE, "comparison"),
     ("compare", "before.json after.json other.json --by robot", DONE, "comparison"),
@@ -94,8 +99,8 @@ TABLE = [
     ("rollback", "--yes", NO_DAEMON, "error"),
 ]
 # Files that the calls above read and write, and the schema of each or of its lines.
-FILES = [("cal.json", "calibration"), ("good.json", "calibration"), ("drive.jsonl", "recording"), ("copy.jsonl", "recording"),
-         ("pairs.jsonl", "pair")]
+FILES = [("history.json", "history"), ("cal.json", "calibration"), ("good.json", "calibration"), ("drive.jsonl", "recording"),
+         ("copy.jsonl", "recording"), ("pairs.jsonl", "pair")]
 
 
 # Verbs whose output is a file for other programs: JSON Lines, configurations.
@@ -156,6 +161,10 @@ def prepare(folder, sample):
             lines.append({"type": "ticks", "t": 0.1 * i, "left": 174 * i, "right": 174 * i})
             lines.append({"type": "pose", "t": 0.1 * i, "x": 0.02 * i, "y": 0.0, "yaw": 0.0})
         file.writelines(json.dumps(line) + "\n" for line in lines)
+    with open(os.path.join(folder, "history.json"), "w", encoding="utf-8") as file:
+        json.dump({"format": "odomcalib-history/1", "calibrations": "", "entries": [
+            {"id": "0001", "time": 1795953600000000, "action": "apply", "outcome": "committed", "robot_id": "a", "device": "",
+             "before": {"track_width": 0.4}, "after": {"track_width": 0.41}}]}, file)
     with open(os.path.join(folder, "map.g2o"), "w", encoding="utf-8") as file:
         file.write("VERTEX_SE2 0 0 0 0\nVERTEX_SE2 1 1 0 0\nEDGE_SE2 0 1 1 0 0 1 0 0 1 0 1\n")
     with open(os.path.join(folder, "pairs.jsonl"), "w", encoding="utf-8") as file:

@@ -113,6 +113,13 @@ def unanswered(browser, questions):
             if not re.search(answer, seen, re.M)]
 
 
+def faults_of_write_backs(browser, name):
+    """What was written to the controller is folded, where somebody has said it, and is not there where nobody has."""
+    titles = browser.evaluate('() => [...document.querySelectorAll("summary")].map((e) => e.textContent)')
+    wanted = name == "everything"
+    return [] if ("Written to the controller" in titles) == wanted else ["folded: " + ", ".join(titles)]
+
+
 def unlisted():
     """The table in the documents has these questions and no other."""
     with open(TABLE, encoding="utf-8") as file:
@@ -209,6 +216,22 @@ def with_everything(finding):
     return body
 
 
+def a_history():
+    """Of the robot with everything: written and proven, taken back, written again."""
+    def entry(number, action, proven, before, after):
+        lengths = ("left_wheel_diameter", "right_wheel_diameter", "track_width")
+        return {"id": "%04d" % number, "time": 1795953600000000 + number * 86400000000, "action": action, "outcome": "committed",
+                "before": dict(zip(lengths, before)), "after": dict(zip(lengths, after)), "device": "0x29c/0x2001/1234567",
+                "user": 1000, "user_name": "commissioning", "robot_id": "carrier-17", "proven": proven,
+                "restores": "0001" if action == "rollback" else ""}
+    old, new = (0.15, 0.15, 0.4), (0.153056, 0.154423, 0.394106)
+    figures = {"straight_metre_length": 0.0221, "straight_metre_heading": 0.004, "full_turn_heading": 0.065}
+    entries = [entry(1, "apply", True, old, new), entry(2, "rollback", False, new, old), entry(3, "apply", True, old, new)]
+    for one in entries[::2]:
+        one["trial"] = {"before": figures, "after": {name: value / 20 for name, value in figures.items()}}
+    return {"format": "odomcalib-history/1", "calibrations": "/var/lib/odomcalib/calibrations", "entries": entries[::-1]}
+
+
 def write_reports(program, sample, folder):
     """Names and addresses of pages, one for each verdict."""
     def ctl(*words):
@@ -218,12 +241,15 @@ def write_reports(program, sample, folder):
         good = json.load(file)
     refused = {**good, "verdict": "refused", "reasons": ["the motion does not separate the parameters"], "picture": None,
                "drive_errors": [], "detectable": []}
+    with open(os.path.join(folder, "history.json"), "w", encoding="utf-8") as file:
+        json.dump(a_history(), file)
     pages = []
     finding = with_a_finding(good)
     for name, body in (("good", good), ("finding", finding), ("everything", with_everything(finding)), ("refused", refused)):
         with open(os.path.join(folder, name + ".json"), "w", encoding="utf-8") as file:
             json.dump(body, file)
-        if ctl("report", name + ".json", "--html", name + ".html") != 0:
+        written = ["--history", "history.json"] if name == "everything" else []
+        if ctl("report", name + ".json", "--html", name + ".html", *written) != 0:
             sys.exit("no report of " + name)
         pages.append((name, "file://" + os.path.join(folder, name + ".html")))
     return pages
@@ -278,6 +304,7 @@ def main(program, sample):
                 faults += ["%s, %s: %s" % (name, screen, fault) for fault in faults_in_sight(browser, name)]
                 if (name, screen) == ("everything", "desk"):
                     faults += unanswered(browser, QUESTIONS)
+            faults += [name + ": " + fault for fault in faults_of_write_backs(browser, name)]
             faults += [name + ", paper: " + fault for fault in faults_on_paper(browser, url, folder)]
         for name, url in write_sheets(os.path.abspath(program), folder):
             faults += [name + ": " + fault for fault in faults_of_sheet(browser, url, folder)]
