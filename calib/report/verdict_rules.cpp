@@ -12,6 +12,7 @@
 #include "calib/math/number_text.hpp"
 #include "calib/report/settings.hpp"
 #include "calib/validation/drive_error.hpp"
+#include "calib/validation/settings.hpp"
 
 namespace odomcalib::calib::report {
 namespace {
@@ -385,6 +386,15 @@ Objections contradicting_pairs(const Calibration&, const VerdictEvidence& eviden
                   "time stamps, and record again")};
 }
 
+/// No rule on figures of held-out data could object. Of few pairs there is no residual, but errors of
+/// odometry.
+Objections untested(const Calibration& calibration, const VerdictEvidence& evidence) {
+  if (calibration.residual.held_out || !evidence.drive_errors.empty()) return {};
+  return {warning(
+      "nothing of this drive was tested on data that was not fitted: that takes more than one block of " +
+      math::fixed(validation::settings::kFoldBlock_s, 0) + " s, with motion in each")};
+}
+
 Objections residual_beyond_noise(const Calibration& calibration, const VerdictEvidence&) {
   const ResidualReport& residual = calibration.residual;
   if (!residual.after || !residual.noise_floor) return {};
@@ -534,6 +544,7 @@ constexpr std::array kRules = {
     VerdictRule{"unmatched_pairs", "record where the lidar sees walls on all sides", unmatched_pairs},
     VerdictRule{"contradicting_pairs", "look for lost counts, slip and wrong time stamps, and record again",
                 contradicting_pairs},
+    VerdictRule{"untested", "drive longer, a minute or more, and solve again", untested},
     VerdictRule{"residual_beyond_noise", "record longer, with more kinds of motion", residual_beyond_noise},
     VerdictRule{"odometry_off", "look for lost counts, slip, and what touches the robot, and record again",
                 odometry_off},

@@ -42,6 +42,7 @@ TEST(ContactNoise, is_not_stated_where_nothing_was_held_out) {
   Recording recording = test_support::driven_recording({0.1, 0.05, 0.2});
   const auto solved = solve({&recording, 1}, {{"none"}});
   EXPECT_TRUE(odometry::contact_noise_of(solved));
+  EXPECT_EQ(solved.verdict, Verdict::accepted);
   const auto beyond = [](const auto& sample) { return sample.t > 18.0; };  // a block is of 20 s
   std::erase_if(recording.ticks, beyond);
   std::erase_if(recording.poses, beyond);
@@ -50,6 +51,9 @@ TEST(ContactNoise, is_not_stated_where_nothing_was_held_out) {
   EXPECT_FALSE(odometry::contact_noise_of(of_one_block));
   EXPECT_FALSE(of_one_block.residual.held_out);
   EXPECT_TRUE(report_data_of(of_one_block).drive_errors.empty());
+  EXPECT_EQ(of_one_block.verdict, Verdict::accepted_with_warnings);
+  ASSERT_FALSE(of_one_block.reasons.empty());
+  EXPECT_NE(of_one_block.reasons.back().find("nothing of this drive was tested"), std::string::npos);
 }
 
 }  // namespace

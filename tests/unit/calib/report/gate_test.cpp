@@ -64,6 +64,23 @@ TEST(Gate, of_a_length_that_is_not_determined_the_value_says_nothing) {
   }
 }
 
+// Whatever the values are: without a test nobody has seen them predict anything.
+TEST(Gate, warns_of_a_drive_of_which_nothing_was_tested) {
+  Calibration calibration = sound();
+  calibration.residual.held_out = false;
+  const GateResult gate = judge(calibration, kFirm);
+  EXPECT_EQ(gate.verdict, Verdict::accepted_with_warnings);
+  ASSERT_EQ(gate.reasons.size(), 1U);
+  EXPECT_NE(gate.reasons[0].find("takes more than one block of 20 s"), std::string::npos) << gate.reasons[0];
+  EXPECT_EQ(gate.next_step, "drive longer, a minute or more, and solve again");
+  VerdictEvidence of_few_pairs = kFirm;
+  of_few_pairs.drive_errors = {
+      {"full_turn_heading", "rad", 3, Bounded{0.3, 0.2, 0.4}, std::nullopt, Bounded{0.01, 0.0, 0.02}, 0.01}};
+  EXPECT_EQ(judge(calibration, of_few_pairs).verdict, Verdict::accepted);
+  calibration.residual.held_out = true;
+  EXPECT_EQ(judge(calibration, kFirm).verdict, Verdict::accepted);
+}
+
 TEST(Gate, accepts_what_only_a_law_of_unknown_shape_makes_uncertain_and_says_so) {
   const Calibration uncertain = with_track(0.4, 0.0121);
   VerdictEvidence evidence = kFirm;
