@@ -195,6 +195,7 @@ std::vector<DataUse> data_use(std::span<const Recording> recordings,
     for (const Discarded& d : recording.discarded)
       use.discarded.emplace_back(d.what + ": " + d.reason, d.count);
     use.choices = recording.choices;
+    use.middleware = recording.middleware;
     if (i < pairs.size()) {
       use.counts.emplace_back("pairs", pairs[i].pairs.size());
       for (const auto& [reason, count] : pairs[i].rejected)

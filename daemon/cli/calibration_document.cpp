@@ -222,12 +222,9 @@ bool is_from_elsewhere(const Calibration& calibration) {
                      [](const DataUse& data) { return !data.choices.empty(); });
 }
 
-/// As it names the types of its messages.
 bool runs_ros2(const Calibration& calibration) {
-  const auto is_of_ros2 = [](const std::string& choice) { return choice.find("/msg/") != std::string::npos; };
-  return std::any_of(calibration.data.begin(), calibration.data.end(), [&](const DataUse& data) {
-    return std::any_of(data.choices.begin(), data.choices.end(), is_of_ros2);
-  });
+  return std::any_of(calibration.data.begin(), calibration.data.end(),
+                     [](const DataUse& data) { return data.middleware == Middleware::ros2; });
 }
 
 std::string next_step(const Calibration& calibration) {

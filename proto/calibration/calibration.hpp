@@ -12,6 +12,7 @@
 
 #include "proto/discarded.hpp"
 #include "proto/measurements.hpp"
+#include "proto/middleware.hpp"
 #include "proto/result.hpp"
 
 namespace odomcalib {
@@ -81,6 +82,7 @@ struct DataUse {
   std::vector<std::pair<std::string, std::size_t>> counts;     ///< e.g. ticks, scans, pairs
   std::vector<std::pair<std::string, std::size_t>> discarded;  ///< reason -> count
   std::vector<std::string> choices;  ///< what was taken where the file held several, e.g. topics
+  Middleware middleware = Middleware::none;
 };
 
 enum class Verdict { accepted, accepted_with_warnings, refused };

@@ -202,12 +202,25 @@ std::vector<std::pair<std::string, std::size_t>> read_counts(const Node& node) {
   return out;
 }
 
+/// Files of earlier versions do not state it: there a choice names the type of the messages, as ROS 2 writes
+/// it.
+Middleware read_middleware(const Node& node, const std::vector<std::string>& choices) {
+  const std::string name = node.text();
+  for (const Middleware one : {Middleware::ros1, Middleware::ros2})
+    if (name == name_of(one)) return one;
+  const bool names_ros2 = std::any_of(choices.begin(), choices.end(), [](const std::string& choice) {
+    return choice.find("/msg/") != std::string::npos;
+  });
+  return names_ros2 ? Middleware::ros2 : Middleware::none;
+}
+
 std::vector<DataUse> read_data_uses(const Node& node) {
   std::vector<DataUse> out;
   node.each([&](const Node& value) {
     out.push_back({value["file"].text(), value["sha256"].text(), value["begin"].optional_number(),
                    value["duration"].optional_number().value_or(0.0), read_counts(value["counts"]),
                    read_counts(value["discarded"]), texts(value["choices"])});
+    out.back().middleware = read_middleware(value["middleware"], out.back().choices);
   });
   return out;
 }

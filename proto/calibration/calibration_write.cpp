@@ -136,6 +136,7 @@ Json data(const std::vector<DataUse>& uses) {
                    {"counts", counts(use.counts)},
                    {"discarded", counts(use.discarded)}});
     if (!use.choices.empty()) out.back()["choices"] = use.choices;
+    if (use.middleware != Middleware::none) out.back()["middleware"] = name_of(use.middleware);
   }
   return out;
 }

@@ -7,6 +7,7 @@
 
 #include "proto/discarded.hpp"
 #include "proto/measurements.hpp"
+#include "proto/middleware.hpp"
 #include "proto/result.hpp"
 #include "proto/unpack_limit.hpp"
 
@@ -56,6 +57,7 @@ struct Recording {
   /// s since 1970 at which t is 0, where times count from a second of the file; 0: they are as recorded.
   double time_zero = 0.0;
   MotionSource motion = MotionSource::ticks;
+  Middleware middleware = Middleware::none;
   // Sources of `ticks`, as recorded; empty but for the one that `motion` names.
   std::vector<WheelSample> wheels;        ///< rad
   std::vector<WheelSample> wheel_speeds;  ///< rad/s

@@ -38,6 +38,8 @@ class RecordingBuilder {
                std::optional<double> t = std::nullopt);
   /// Something was taken where the file held several.
   void choose(const std::string& choice) { recording_.choices.push_back(choice); }
+  /// Messages of it were taken.
+  void take_from(Middleware middleware) { recording_.middleware = middleware; }
   /// Times of what is added count from here.
   /// @param t s since 1970
   void count_from(double t) { recording_.time_zero = t; }

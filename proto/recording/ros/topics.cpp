@@ -179,8 +179,17 @@ void tell_rest(RecordingBuilder& builder, const Collector& collector, const Chos
   for (const auto& [what, count] : collector.discarded()) builder.discard(what.first, what.second, count);
 }
 
+/// Where a bridge mixed both, ROS 2 is what goes on running.
+Middleware middleware_of(const Chosen& chosen) {
+  const auto taken = taken_topics(chosen);
+  const bool is_cdr = std::any_of(taken.begin(), taken.end(),
+                                  [](const Topic* topic) { return topic->encoding == Encoding::cdr; });
+  return is_cdr ? Middleware::ros2 : Middleware::ros1;
+}
+
 std::optional<Error> fill_chosen(RecordingBuilder& builder, Chosen& chosen, const std::string& where) {
   const bool no_angles = chosen[Part::wheel_speeds] != nullptr || speeds_only(chosen);
+  builder.take_from(middleware_of(chosen));
   if (auto error = settle_publishers(builder, chosen, no_angles, where)) return error;
   const Clock clock(chosen);
   if (!clock.remark().empty()) builder.choose(clock.remark());

@@ -375,22 +375,22 @@ TEST(Export, of_lengths_alone_says_what_odometry_then_errs_by) {
 }
 
 TEST(Report, says_what_is_lost_where_the_robot_runs_ros2) {
-  const auto lines_of = [](const char* type, bool has_effects, Verdict verdict) {
+  const auto lines_of = [](Middleware middleware, bool has_effects, Verdict verdict) {
     Calibration calibration = for_export();
     calibration.verdict = verdict;
     if (!has_effects) calibration.effects.resize(1);  // the clock's alone: odometry has none
-    calibration.data[0].choices = {std::string("scan: /scan (") + type + ", 9 messages)"};
+    calibration.data[0].middleware = middleware;
     return verdict_section(calibration).lines;
   };
   const auto told =
       testing::Contains(HasSubstr("controllers of ROS 2 hold lengths alone; without these effects"));
-  const auto lines = lines_of("sensor_msgs/msg/LaserScan", true, Verdict::accepted);
+  const auto lines = lines_of(Middleware::ros2, true, Verdict::accepted);
   EXPECT_THAT(lines, told);
   EXPECT_THAT(lines, testing::Contains(HasSubstr("libodomcalib applies them")));
   EXPECT_THAT(lines.back(), HasSubstr("Next: "));
-  EXPECT_THAT(lines_of("sensor_msgs/LaserScan", true, Verdict::accepted), Not(told));
-  EXPECT_THAT(lines_of("sensor_msgs/msg/LaserScan", false, Verdict::accepted), Not(told));
-  EXPECT_THAT(lines_of("sensor_msgs/msg/LaserScan", true, Verdict::refused), Not(told));
+  EXPECT_THAT(lines_of(Middleware::ros1, true, Verdict::accepted), Not(told));
+  EXPECT_THAT(lines_of(Middleware::ros2, false, Verdict::accepted), Not(told));
+  EXPECT_THAT(lines_of(Middleware::ros2, true, Verdict::refused), Not(told));
 }
 
 TEST(Report, lays_scans_on_each_other) {

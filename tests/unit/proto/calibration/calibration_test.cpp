@@ -40,11 +40,30 @@ Calibration example() {
              12.5,
              {{"ticks", 100}, {"scans", 20}},
              {{"scan: cut off", 1}},
-             {"scan: /scan"}}};
+             {"scan: /scan"},
+             Middleware::ros1}};
   c.discarded = {{"interval", "count does not continue", 3, 100, 0.1 + 0.2, 71.0}, {"file", "cut off", 1}};
   c.repairs = {{"times", "of reception", "stamps are in whole seconds"}};
   c.extensions = {{"zz_own", R"({"b":1,"a":[null,true]})"}, {"aa", "\"text\""}};
   return c;
+}
+
+// Those of earlier versions state the type of the messages alone, in what was chosen.
+TEST(CalibrationFile, says_whose_messages_were_taken) {
+  const auto read = [](const char* choice, const char* middleware) {
+    auto body = nlohmann::json::parse(to_json(example()));
+    body["data"][0]["choices"] = {choice};
+    body["data"][0]["middleware"] = middleware == nullptr ? nlohmann::json() : nlohmann::json(middleware);
+    return value_of(calibration_from_json(body.dump(), "cal.json")).data[0].middleware;
+  };
+  EXPECT_EQ(read("scan: /scan (sensor_msgs/msg/LaserScan, 9 messages)", nullptr), Middleware::ros2);
+  EXPECT_EQ(read("scan: /scan (sensor_msgs/LaserScan, 9 messages)", nullptr), Middleware::none);
+  EXPECT_EQ(read("scan: /scan (sensor_msgs/LaserScan as chosen, 9 messages)", "ros2"), Middleware::ros2);
+  EXPECT_EQ(read("scan: /a/msg/b (sensor_msgs/LaserScan, 9 messages)", "ros1"), Middleware::ros1);
+  EXPECT_EQ(nlohmann::json::parse(to_json(example()))["data"][0]["middleware"], "ros1");
+  Calibration own = example();
+  own.data[0].middleware = Middleware::none;
+  EXPECT_FALSE(nlohmann::json::parse(to_json(own))["data"][0].contains("middleware"));
 }
 
 // A solve of yesterday's recording tomorrow gives the same bytes: the file says when the robot was driven.
@@ -84,6 +103,7 @@ TEST(CalibrationFile, read_returns_what_was_written) {
   EXPECT_EQ(back.methods[0].refused, "only 1 straight run");
   EXPECT_EQ(back.data[0].counts, example().data[0].counts);
   EXPECT_EQ(back.data[0].choices, example().data[0].choices);
+  EXPECT_EQ(back.data[0].middleware, Middleware::ros1);
   EXPECT_EQ(back.verdict, Verdict::accepted_with_warnings);
   ASSERT_EQ(back.discarded.size(), 2U);
   EXPECT_EQ(back.discarded[0].begin, 0.1 + 0.2);

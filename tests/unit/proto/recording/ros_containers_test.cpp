@@ -88,6 +88,20 @@ TEST(RosContainers, hold_the_same_drive_in_every_packing_and_encoding) {
   }
 }
 
+// By the encoding: a type that the file does not name, or names in the manner of the other, is no sign.
+TEST(RosContainers, say_whose_messages_they_hold) {
+  for (const Form& form : forms()) {
+    const bool is_ros1 = form.name.starts_with("bag_") || form.name.ends_with("_ros1");
+    EXPECT_EQ(value_of(read_ros(form.bytes)).middleware, is_ros1 ? Middleware::ros1 : Middleware::ros2)
+        << form.name;
+  }
+  sim::RosLog log = small_log(Wire::cdr_little);
+  for (auto& topic : log.topics) topic.type.clear();
+  const auto chosen =
+      value_of(read_ros(write_mcap(log), {{"wheels", "/joint_states", {}}, {"scan", "/scan", {}}}));
+  EXPECT_EQ(chosen.middleware, Middleware::ros2);
+}
+
 /// Whole parts are used, and a file that was cut says so.
 TEST(RosContainers, that_are_cut_off_give_what_is_whole) {
   for (const Form& form : forms()) {
