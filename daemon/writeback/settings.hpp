@@ -12,9 +12,15 @@ namespace odomcalib::writeback::settings {
 /// s that a reset node's rest may take to be known. Chosen: it is known only when counts have come for a
 /// while.
 inline constexpr double kWaitForRest_s = 2.0;
-/// s for a controller that is configured anew, on the way back to the old values. Chosen: boot and
-/// configuration take one.
+/// s for a controller that has left, on the way back to the old values. Chosen: boot and configuration take
+/// one, and a configuration that failed is tried again after three.
 inline constexpr double kWaitForController_s = 5.0;
+/// s for one that is being configured all the time. Derived: of some 70 requests each may be late by a
+/// time-out of 0.5 s, there or back.
+inline constexpr double kWaitForSetUp_s = 35.0;
+/// How often a job of the way back is begun again because the controller left during it. Chosen: a drive that
+/// leaves each time is no drive to wait for.
+inline constexpr int kMostReturns = 3;
 /// Entries of the history. Chosen.
 inline constexpr std::size_t kKeptEntries = 50;
 /// Bytes of a journal from which a new one begins. Chosen.

@@ -117,6 +117,7 @@ Result<void> Transaction::begin(Task task, const std::string& label) {
   stored_again_ = false;
   old_known_ = true;
   unproven_ = false;
+  returns_ = 0;
   proof_.reset();
   phase_ = Phase::read_first;
   started_ = false;
@@ -243,6 +244,8 @@ Result<void> Transaction::start_job() const {
 void Transaction::start(Phase phase) {
   phase_ = phase;
   entered_ = now_;
+  away_ = now_;
+  answered_ = now_;
   started_ = false;
   start_when_at_rest();
 }
@@ -257,10 +260,28 @@ bool Transaction::controller_there() const {
          (state != drivers::ControllerState::absent && state != drivers::ControllerState::configuring);
 }
 
+/// A controller that answers is waited for longer: its set-up is many requests, and each may be late.
+bool Transaction::waits_for_controller() {
+  if (controller_there()) return false;
+  away_ = now_;
+  if (controller_->state() == drivers::ControllerState::configuring) answered_ = now_;
+  return now_ - answered_ < writeback::settings::kWaitForController_s &&
+         now_ - entered_ < writeback::settings::kWaitForSetUp_s;
+}
+
+/// A controller that left during a job of the way back, and not one that refuses it, is waited for once more.
+bool Transaction::again_when_back(const Job& job, Phase phase) {
+  const bool refused = job.error && job.error->code == ErrorCode::refused;
+  if (controller_there() || refused || returns_ >= writeback::settings::kMostReturns) return false;
+  ++returns_;
+  start(phase);
+  return true;
+}
+
 void Transaction::start_when_at_rest() {
-  if (!controller_there() && now_ - entered_ < writeback::settings::kWaitForController_s) return;
-  const bool needs_rest = kind() != Job::Kind::read;
-  if (needs_rest && !controller_->at_rest() && now_ - entered_ < writeback::settings::kWaitForRest_s) return;
+  if (waits_for_controller()) return;
+  const bool needs_rest = kind() != Job::Kind::read && controller_there();
+  if (needs_rest && !controller_->at_rest() && now_ - away_ < writeback::settings::kWaitForRest_s) return;
   started_ = true;
   if (auto begun = start_job(); !begun) {
     Job job;
@@ -297,8 +318,10 @@ void Transaction::on_result(const Job& job) {
       return on_old_written(job);
     case Phase::store_old:
       if (!job.error) return start(Phase::verify_old);
-      // A lost answer must not be the reason why nobody knows what is stored.
-      if (!std::exchange(stored_again_, true)) return start(Phase::store_old);
+      // A lost answer must not be the reason why nobody knows what is stored. Where the controller left, it
+      // may have restarted: its RAM holds what was stored then, and that may be the new values.
+      if (!std::exchange(stored_again_, true))
+        return again_when_back(job, Phase::write_old) ? void() : start(Phase::store_old);
       report_.error = *job.error;
       return finish(WriteOutcome::unknown);
     case Phase::verify_old:
@@ -395,6 +418,7 @@ void Transaction::go_back(const Error& why) {
 
 void Transaction::on_old_written(const Job& job) {
   const bool restored = !job.error && holds(job.parameters, report_.before);
+  if (!restored && again_when_back(job, Phase::write_old)) return;
   // A controller that refuses its old values may never have lost them: that is seen, not concluded.
   if (!restored && !store_begun_) return start(Phase::verify_old);
   if (!restored) return finish(WriteOutcome::unknown);
@@ -406,6 +430,7 @@ void Transaction::on_old_written(const Job& job) {
 
 void Transaction::on_old_verified(const Job& job) {
   const bool good = !job.error && holds(job.parameters, report_.before);
+  if (!good && again_when_back(job, Phase::verify_old)) return;
   if (good) report_.in_force = job.parameters;
   finish(good ? WriteOutcome::rolled_back : WriteOutcome::unknown);
 }

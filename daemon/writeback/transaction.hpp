@@ -88,6 +88,8 @@ class Transaction {
   Result<void> begin(Task task, const std::string& label);
   void start(Phase phase);
   [[nodiscard]] bool controller_there() const;
+  [[nodiscard]] bool waits_for_controller();
+  bool again_when_back(const Job& job, Phase phase);
   void start_when_at_rest();
   Result<void> start_job() const;
   [[nodiscard]] Job::Kind kind() const;
@@ -130,6 +132,9 @@ class Transaction {
   bool unproven_ = false;      // the new values are to be proven before they are stored
   std::optional<Result<void>> proof_;
   double entered_ = 0.0;
+  double away_ = 0.0;      // s, when the controller was last seen to be away
+  double answered_ = 0.0;  // s, and when it answered meanwhile
+  int returns_ = 0;        // jobs of the way back that it left
   // Controller and times of the present step.
   drivers::Controller* controller_ = nullptr;
   double now_ = 0.0;

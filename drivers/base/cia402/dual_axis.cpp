@@ -27,6 +27,7 @@ void DualAxis::on_frame(const CanFrame& frame) {
   if (frame.extended || frame.remote || frame.length > 8) return;
   if (sdo_.on_frame(frame, now_)) {
     ++answers_;
+    watch_.on_answer(situation(), now_);
     advance_setup();
     return;
   }
@@ -36,7 +37,9 @@ void DualAxis::on_frame(const CanFrame& frame) {
   if (frame.id == 0x000 || frame.id == 0x600u + profile_.node) return on_other_master(frame);
   for (const canopen::Pdo& pdo : profile_.pdos) {
     if (pdo.cob_id != frame.id) continue;
-    return pdo.transmit ? data_.on_frame(pdo, frame, setup_.started(), now_) : on_other_master(frame);
+    if (!pdo.transmit) return on_other_master(frame);
+    watch_.on_process_data(situation(), now_);
+    return data_.on_frame(pdo, frame, setup_.started(), now_);
   }
   if (setup_.receives(frame.id)) on_other_master(frame);
 }
@@ -47,8 +50,12 @@ void DualAxis::on_other_master(const CanFrame& frame) {
 
 NodeWatch::Situation DualAxis::situation() const {
   const Phase phase = setup_.phase();
-  return {phase == Phase::absent || phase == Phase::identifying, setup_.ready(), data_.motion().active(),
-          job_.storing()};
+  return {phase == Phase::absent || phase == Phase::identifying,
+          setup_.ready(),
+          data_.motion().active(),
+          job_.storing(),
+          job_.running(),
+          now_ - started_at_ <= canopen::kSdoSettles_s};
 }
 
 void DualAxis::take(const NodeWatch::Finding& finding) {
@@ -101,6 +108,7 @@ void DualAxis::advance_setup() {
       return watch_.heard(now_);
     case NodeSetup::Step::configured:
       watch_.was_set_up();
+      started_at_ = now_;
       return data_.expect();
     case NodeSetup::Step::running:
       data_.begin_motion();

@@ -83,6 +83,7 @@ class DualAxis final : public Controller {
   ProcessData data_;
   ParameterJob job_;
   double read_since_ = 0.0;    // s, begin of the reading in progress
+  double started_at_ = -1e9;   // s, when the node was last started
   double restarted_at_ = 0.0;  // s, when we reset the node to see what it stored
   std::uint64_t frames_in_ = 0, answers_ = 0;
 };

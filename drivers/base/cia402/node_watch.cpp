@@ -56,8 +56,27 @@ NodeWatch::Finding NodeWatch::on_life_sign(const CanFrame& frame, const Situatio
   node_state_ = frame.data[0] & 0x7F;  // bit 7 is the toggle of node guarding
   if (node_state_ == 0) return on_boot_up(node, now);
   if (!node.ready || node_state_ == kOperational) return {};
+  left_to_ = node_state_;
+  const bool may_be_old = !node.moving && (node.job || node.fresh);
+  if (!may_be_old) return left_operational(now);
+  if (!left_at_) left_at_ = now;
+  return {};
+}
+
+NodeWatch::Finding NodeWatch::left_operational(double now) const {
   return lost(now, "left_operational",
-              "the controller left operational: it is " + canopen::nmt_state_text(node_state_));
+              "the controller left operational: it is " + canopen::nmt_state_text(left_to_));
+}
+
+/// Nothing moves while parameters are read or written, and a node that answers is there: the time-outs of the
+/// requests find one that is not.
+void NodeWatch::on_answer(const Situation& node, double now) {
+  if (node.job) heard(now);
+}
+
+void NodeWatch::on_process_data(const Situation& node, double now) {
+  if (node.job) heard(now);
+  left_at_.reset();
 }
 
 /// Most controllers boot for longer than their life signs may be missing: then the stop was before.
@@ -103,6 +122,10 @@ NodeWatch::Finding NodeWatch::on_other_master(const CanFrame& frame, const Situa
 }
 
 NodeWatch::Finding NodeWatch::check(const Situation& node, double now) {
+  if (node.ready && left_at_ && (node.moving || now - *left_at_ > kPositionsLive_s)) {
+    left_at_.reset();
+    return left_operational(now);
+  }
   if (!node.ready || node.storing || !heard_at_) return {};
   const double longest = kMissedHeartbeats * 1e-3 * profile_.heartbeat_ms;
   if (now - *heard_at_ <= longest) return {};

@@ -21,6 +21,8 @@ class NodeWatch {
     bool ready = false;      ///< configured
     bool moving = false;     ///< torque is wanted
     bool storing = false;    ///< the node is busy for seconds and its life signs may be late
+    bool job = false;        ///< its parameters are read or written: it is asked all the time, without torque
+    bool fresh = false;      ///< life signs that it sent before it was started may still come
   };
   struct Finding {
     std::optional<ControllerEvent> event;
@@ -35,6 +37,10 @@ class NodeWatch {
   Finding on_error_frame(const CanFrame& frame, double now);
   Finding on_emergency(const CanFrame& frame, double now);
   Finding on_life_sign(const CanFrame& frame, const Situation& node, double now);
+  /// An answer to one of our requests.
+  void on_answer(const Situation& node, double now);
+  /// Process data of the node. It sends them in no other state than operational.
+  void on_process_data(const Situation& node, double now);
   /// NMT, an SDO request, or process data to the node. Our own frames do not come back.
   Finding on_other_master(const CanFrame& frame, const Situation& node, double now);
 
@@ -53,7 +59,10 @@ class NodeWatch {
   /// @param since s, begin of the reading
   void was_read(double since);
   /// It was set up anew: nothing is left of what others changed.
-  void was_set_up() { touched_at_.reset(); }
+  void was_set_up() {
+    touched_at_.reset();
+    left_at_.reset();
+  }
 
   [[nodiscard]] bool hears() const { return heard_at_.has_value(); }
   /// As its last life sign said.
@@ -71,12 +80,15 @@ class NodeWatch {
 
  private:
   Finding on_boot_up(const Situation& node, double now);
+  [[nodiscard]] Finding left_operational(double now) const;
   [[nodiscard]] bool commands_node(const CanFrame& frame) const;
 
   const Profile& profile_;
   std::optional<double> heard_at_;  // s, last life sign
   bool fell_silent_ = false;        // was lost for want of life signs and has not booted since
   std::uint8_t node_state_ = 0;
+  std::optional<double> left_at_;  // s, when a life sign said so that may be an old one
+  std::uint8_t left_to_ = 0;       // the state that it named
   double own_heartbeat_due_ = 0.0;
   double last_other_master_ = -1e9, last_foreign_data_ = -1e9;
   std::optional<double> touched_at_;  // s, when somebody else was last seen to change the node

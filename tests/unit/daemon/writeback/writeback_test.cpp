@@ -1,3 +1,5 @@
+#include <set>
+
 #include "tests/unit/daemon/writeback/fake_controller.hpp"
 
 namespace odomcalib::writeback_test {
@@ -108,6 +110,121 @@ TEST_P(EveryCrash, is_decided_by_comparison_and_twice_changes_nothing) {
 INSTANTIATE_TEST_SUITE_P(Moments, EveryCrash,
                          testing::Combine(testing::Range(0, 12), testing::Bool(), testing::Bool(),
                                           testing::Values(Mishap::none, Mishap::half_written)));
+
+/// Leaves during the jobs of these numbers, once each, and is configured anew for so long.
+struct Leaving : FakeController {
+  explicit Leaving(Memory& all) : FakeController(all), memory(all) {}
+  drivers::ControllerState state() const override {
+    if (now < absent_until) return drivers::ControllerState::absent;
+    return now < back_at ? drivers::ControllerState::configuring : drivers::ControllerState::disabled;
+  }
+  bool at_rest() const override { return now >= back_at + rest_known_after; }
+  Result<void> start_read_parameters(double t) override {
+    return begin(t) ? FakeController::start_read_parameters(t) : not_configured();
+  }
+  Result<void> start_write_parameters(const std::vector<drivers::ParameterValue>& values, double t) override {
+    if (begin(t) && !at_rest()) return Error{ErrorCode::refused, "wheels are turning", "", ""};
+    return state() == kThere ? FakeController::start_write_parameters(values, t) : not_configured();
+  }
+  Result<void> start_store(double t) override {
+    return begin(t) ? FakeController::start_store(t) : not_configured();
+  }
+  std::optional<ParameterJobResult> take_job_result() override {
+    auto result = FakeController::take_job_result();
+    if (!result || !leaves_during.contains(jobs - 1)) return result;
+    leaves_during.erase(jobs - 1);
+    absent_until = now + absent;
+    back_at = absent_until + configuring;
+    if (restarts) memory.power_cycle();
+    result->error = Error{ErrorCode::write_unknown, "controller was lost during the job", "", ""};
+    return result;
+  }
+  WriteReport write_to_the_end() {
+    const TemporaryFolder folder;
+    Journal journal = value_of(Journal::open(folder / "journal"));
+    Transaction transaction(journal);
+    EXPECT_TRUE(transaction.write("apply", kNew).ok());
+    for (now = 0.0; now < 300.0; now += 0.01) {
+      transaction.step(*this, now, 1);
+      if (auto report = transaction.take_report()) return *report;
+    }
+    ADD_FAILURE() << "no end";
+    return {};
+  }
+
+  static constexpr auto kThere = drivers::ControllerState::disabled;
+  std::set<int> leaves_during;
+  double absent = 0.1, configuring = 1.0, rest_known_after = 0.0;  // s
+  bool restarts = false;
+  double now = 0.0, absent_until = -1e9, back_at = -1e9;
+  Memory& memory;
+
+ private:
+  bool begin(double t) {
+    now = t;
+    return state() == kThere;
+  }
+  static Result<void> not_configured() {
+    return Error{ErrorCode::refused, "controller is not configured", "", ""};
+  }
+};
+
+// Jobs of a write-back whose store is lost: 0 read, 1 write, 2 store, 3 the old values, 4 their store, 5 the
+// reading of them.
+constexpr int kStoreNew = 2, kWriteOld = 3, kStoreOld = 4, kReadOld = 5;
+
+TEST(Transaction, waits_for_a_controller_that_leaves_during_any_job_of_the_way_back) {
+  for (const int job : {kWriteOld, kStoreOld, kReadOld})
+    for (const bool restarts : {false, true}) {
+      Memory memory;
+      Leaving controller(memory);
+      controller.leaves_during = {kStoreNew, job};
+      controller.restarts = restarts;
+      EXPECT_EQ(controller.write_to_the_end().outcome, WriteOutcome::rolled_back) << job;
+      EXPECT_TRUE(is_old(memory.ram) && is_old(memory.stored)) << job;
+      EXPECT_LE(controller.stores, 3) << job;
+    }
+}
+
+TEST(Transaction, waits_three_times_for_a_controller_that_leaves_again) {
+  for (const int times : {3, 4}) {
+    Memory memory;
+    Leaving controller(memory);
+    controller.leaves_during = {kStoreNew};
+    for (int i = 0; i < times; ++i) controller.leaves_during.insert(kWriteOld + i);
+    EXPECT_EQ(controller.write_to_the_end().outcome,
+              times == 3 ? WriteOutcome::rolled_back : WriteOutcome::unknown);
+  }
+}
+
+TEST(Transaction, waits_five_seconds_for_a_controller_that_is_silent_and_35_for_one_that_answers) {
+  struct Case {
+    double absent, configuring;
+    WriteOutcome end;
+  };
+  for (const Case& one :
+       {Case{4.9, 0.0, WriteOutcome::rolled_back}, Case{5.1, 0.0, WriteOutcome::unknown},
+        Case{0.1, 34.8, WriteOutcome::rolled_back}, Case{0.1, 35.0, WriteOutcome::unknown}}) {
+    Memory memory;
+    Leaving controller(memory);
+    controller.leaves_during = {kStoreNew};
+    controller.absent = one.absent;
+    controller.configuring = one.configuring;
+    EXPECT_EQ(controller.write_to_the_end().outcome, one.end) << one.absent << ", " << one.configuring;
+  }
+}
+
+TEST(Transaction, waits_for_rest_from_when_the_controller_is_back) {
+  for (const double until_rest : {1.9, 2.1}) {
+    Memory memory;
+    Leaving controller(memory);
+    controller.leaves_during = {kStoreNew};
+    controller.configuring = 4.0;
+    controller.rest_known_after = until_rest;
+    EXPECT_EQ(controller.write_to_the_end().outcome,
+              until_rest < 2.0 ? WriteOutcome::rolled_back : WriteOutcome::unknown);
+  }
+}
 
 /// Says that it took all values, and took all but one.
 struct TakesAllButOne : FakeController {

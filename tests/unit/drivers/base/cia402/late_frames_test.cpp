@@ -94,5 +94,67 @@ TEST(LateFrames, a_refusal_that_answers_something_else_is_asked_for_again) {
   EXPECT_FALSE(read.error) << read.error->text();
 }
 
+/// A write has begun when this is constructed.
+struct Writing : AtRest {
+  Writing() {
+    start_writing({{"left_wheel_diameter", 0.16}, {"track_width", 0.41}});
+    EXPECT_TRUE(run_until([&] { return left() == 160000U; }, 1.0));
+  }
+  void life_sign(std::uint8_t state) { controller->on_frame(to_can(sim::make_frame(0x701, {state}), now)); }
+};
+
+TEST(LateFrames, a_write_goes_on_while_life_signs_are_late) {
+  AtRest bench;
+  bench.start_writing({{"left_wheel_diameter", 0.16}});
+  EXPECT_FALSE(bench.job().error);
+  bench.node.faults.heartbeat_stopped = true;
+  bench.start_writing({{"left_wheel_diameter", 0.15}});  // waits for what may still be on its way
+  bench.run(0.3);
+  bench.node.faults.heartbeat_stopped = false;
+  const auto written = bench.job();
+  EXPECT_FALSE(written.error) << written.error->text();
+  EXPECT_EQ(bench.left(), 150000U);
+  EXPECT_EQ(bench.find("heartbeat_lost"), nullptr);
+}
+
+TEST(LateFrames, life_signs_that_stay_away_are_missed_when_the_write_has_ended) {
+  Writing bench;
+  bench.node.faults.heartbeat_stopped = true;
+  EXPECT_FALSE(bench.job().error);
+  EXPECT_EQ(bench.find("heartbeat_lost"), nullptr);
+  bench.run(0.1);
+  EXPECT_NE(bench.find("heartbeat_lost"), nullptr);
+}
+
+TEST(LateFrames, a_write_goes_on_when_a_life_sign_of_before_the_start_comes) {
+  Writing bench;
+  bench.life_sign(0x7F);
+  const auto written = bench.job();
+  EXPECT_FALSE(written.error) << written.error->text();
+  bench.run(0.2);
+  EXPECT_EQ(bench.find("left_operational"), nullptr);
+}
+
+TEST(LateFrames, a_node_that_has_just_been_started_is_not_lost_by_a_life_sign_of_before) {
+  Ready bench;
+  bench.controller->on_frame(to_can(sim::make_frame(0x701, {0x7F}), bench.now));
+  bench.run(0.2);
+  EXPECT_EQ(bench.find("left_operational"), nullptr);
+  bench.run(canopen::kSdoSettles_s);
+  bench.controller->on_frame(to_can(sim::make_frame(0x701, {0x7F}), bench.now));
+  EXPECT_EQ(bench.controller->state(), ControllerState::absent) << "none can come any more";
+}
+
+TEST(LateFrames, a_node_that_leaves_operational_during_a_job_is_lost_within_150_ms) {
+  AtRest bench;
+  bench.start_writing({{"left_wheel_diameter", 0.16}});
+  EXPECT_FALSE(bench.job().error);
+  bench.start_writing({{"left_wheel_diameter", 0.15}});  // waits for what may still be on its way
+  bench.node.receive(sim::make_frame(0x000, {0x80, 1}), bench.now);
+  bench.run(0.15);
+  EXPECT_NE(bench.find("left_operational"), nullptr);
+  EXPECT_TRUE(bench.job().error);
+}
+
 }  // namespace
 }  // namespace odomcalib::drivers::late_frames_test

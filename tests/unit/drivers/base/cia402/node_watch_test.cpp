@@ -26,6 +26,9 @@ class NodeWatch : public testing::Test {
   const drivers::NodeWatch::Situation new_to_us_{.new_to_us = true};
   const drivers::NodeWatch::Situation ready_{.ready = true};
   const drivers::NodeWatch::Situation moving_{.ready = true, .moving = true};
+  const drivers::NodeWatch::Situation in_a_job_{.ready = true, .job = true};
+  const drivers::NodeWatch::Situation fresh_{.ready = true, .fresh = true};
+  const CanFrame pre_operational_ = frame_of(kLifeSign, {0x7F});
 };
 
 TEST_F(NodeWatch, three_life_signs_may_be_missing_unless_the_node_stores) {
@@ -37,6 +40,52 @@ TEST_F(NodeWatch, three_life_signs_may_be_missing_unless_the_node_stores) {
   EXPECT_TRUE(finding.lost);
   ASSERT_TRUE(finding.event);
   EXPECT_EQ(finding.event->code, "heartbeat_lost");
+}
+
+TEST_F(NodeWatch, what_it_answers_and_sends_is_a_sign_of_life_while_a_job_runs_and_not_otherwise) {
+  for (const bool by_answer : {true, false})
+    for (const auto& node : {in_a_job_, ready_, moving_}) {
+      watch_.heard(1.0);
+      if (by_answer)
+        watch_.on_answer(node, 1.08);
+      else
+        watch_.on_process_data(node, 1.08);
+      EXPECT_EQ(watch_.check(node, 1.16).lost, !node.job);
+      EXPECT_TRUE(watch_.check(node, 1.18).lost) << "it has gone silent";
+    }
+}
+
+TEST_F(NodeWatch, a_life_sign_of_another_state_is_an_old_one_when_process_data_follow) {
+  for (const auto& node : {in_a_job_, fresh_}) {
+    EXPECT_FALSE(watch_.on_life_sign(pre_operational_, node, 1.00).lost);
+    watch_.on_process_data(node, 1.02);
+    watch_.on_life_sign(frame_of(kLifeSign, {0x05}), node, 1.09);
+    EXPECT_FALSE(watch_.check(node, 1.15).lost);
+    EXPECT_FALSE(watch_.check(moving_, 1.15).lost);
+  }
+}
+
+TEST_F(NodeWatch, a_life_sign_of_another_state_is_believed_after_100_ms_without_process_data) {
+  for (const auto& node : {in_a_job_, fresh_}) {
+    EXPECT_FALSE(watch_.on_life_sign(pre_operational_, node, 1.00).lost);
+    EXPECT_FALSE(watch_.on_life_sign(pre_operational_, node, 1.03).lost);
+    watch_.on_life_sign(pre_operational_, node, 1.06);
+    EXPECT_FALSE(watch_.check(node, 1.099).lost);
+    const auto finding = watch_.check(node, 1.101);
+    EXPECT_TRUE(finding.lost);
+    ASSERT_TRUE(finding.event);
+    EXPECT_EQ(finding.event->code, "left_operational");
+    EXPECT_FALSE(watch_.check(node, 1.11).lost) << "told once";
+  }
+}
+
+TEST_F(NodeWatch, a_life_sign_of_another_state_is_believed_at_once_when_torque_is_wanted) {
+  EXPECT_TRUE(watch_.on_life_sign(pre_operational_, ready_, 1.0).lost);
+  EXPECT_TRUE(watch_.on_life_sign(pre_operational_, moving_, 2.0).lost);
+  EXPECT_FALSE(watch_.on_life_sign(pre_operational_, fresh_, 3.0).lost);
+  EXPECT_TRUE(watch_.check({.ready = true, .moving = true, .fresh = true}, 3.001).lost);
+  EXPECT_TRUE(
+      watch_.on_life_sign(pre_operational_, {.ready = true, .moving = true, .fresh = true}, 4.0).lost);
 }
 
 TEST_F(NodeWatch, a_boot_up_is_a_loss_of_a_node_in_use_and_news_of_one_that_fell_silent) {
