@@ -178,6 +178,8 @@ def judged(seed):
 def outcome(result, row):
     if "killed" in result:
         return "killed", f'{result["killed"]} ({result["with"]})'
+    if row and "killed" in row:
+        return "killed", f'{row["killed"]}, by hand'
     if row and "equivalent" in row:
         return "equivalent", row["equivalent"]
     if row and "covered" in row:

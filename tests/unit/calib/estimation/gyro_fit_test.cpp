@@ -150,6 +150,25 @@ TEST(GyroFit, one_within_the_tolerance_of_gyros_is_no_fault) {
     EXPECT_FALSE(Drive(4, 4, {scale, 0.0, 0.0, kNoise}).weigh().gyros[0].fault);
 }
 
+/// Intervals that a gyro was held against which read during so many of them, from this one on.
+std::size_t used_during(std::size_t first, std::size_t count) {
+  Drive drive(6, 1);
+  const double begin = 1.0 + kStep * static_cast<double>(first),
+               end = begin + kStep * static_cast<double>(count);
+  std::erase_if(drive.recordings[0].gyro,
+                [&](const GyroSample& sample) { return sample.t < begin - 0.1 || sample.t > end + 0.1; });
+  return drive.weigh().gyros[0].used;
+}
+
+// The turns of the drive, both ways together, from its wheels: 7.57 rad in 19 intervals from the 208th
+// on, 3.31 and 3.03 rad in 20 from the 14th and the 17th.
+TEST(GyroFit, takes_20_intervals_and_half_a_turn) {
+  EXPECT_EQ(used_during(208, 19), 0U);
+  EXPECT_EQ(used_during(208, 20), 20U);
+  EXPECT_EQ(used_during(14, 20), 20U);
+  EXPECT_EQ(used_during(17, 20), 0U);
+}
+
 TEST(GyroFit, without_one_or_with_few_samples_the_fit_stands) {
   Drive drive(5, 4);
   drive.recordings[0].gyro.resize(100);

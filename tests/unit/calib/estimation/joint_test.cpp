@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <limits>
+#include <memory>
 #include <random>
 #include <stdexcept>
 
@@ -106,6 +107,47 @@ TEST(Joint, reported_deviations_agree_with_the_scatter) {
     EXPECT_GT(ratio, 0.7) << "parameter " << k;
     EXPECT_LT(ratio, 1.5) << "parameter " << k;
   }
+}
+
+/// Drives of one robot with so many pairs each, whose errors are so large, m and rad; all are stated to be
+/// half a millimetre.
+struct SeveralDrives {
+  SeveralDrives(std::size_t pairs, const std::vector<double>& errors) {
+    for (const double error : errors) {
+      fixtures.push_back(std::make_unique<Fixture>(error, kSeed + static_cast<unsigned>(fixtures.size())));
+      Fixture& one = *fixtures.back();
+      one.pairs.resize(pairs);
+      for (measurement::SensorPair& pair : one.pairs) pair.covariance = 2.5e-7 * Eigen::Matrix3d::Identity();
+      data.push_back({&one.model, one.pairs});
+    }
+  }
+  /// m, standard deviation that the fit found in each.
+  [[nodiscard]] std::vector<double> found() const {
+    const auto fit = fit_joint(data, {}, vehicle::to_vector(kNominal));
+    EXPECT_TRUE(fit.ok());
+    std::vector<double> deviations;
+    for (const measurement::NoiseModel& noise : fit.value().noise)
+      deviations.push_back(std::hypot(5e-4 * noise.matcher_scale, noise.process_translation));
+    return deviations;
+  }
+  std::vector<std::unique_ptr<Fixture>> fixtures;
+  std::vector<measurement::FitData> data;
+};
+
+TEST(Joint, drives_of_few_pairs_share_the_noise_that_all_of_them_show) {
+  const auto found = SeveralDrives(60, {1e-3, 1e-3}).found();
+  EXPECT_EQ(found[0], found[1]);
+  EXPECT_NEAR(found[0], 1e-3, 1.5e-4);
+}
+
+TEST(Joint, a_drive_of_a_hundred_pairs_has_a_noise_of_its_own) {
+  const auto own = SeveralDrives(100, {1e-3, 3e-3}).found();
+  EXPECT_NEAR(own[0], 1e-3, 2e-4);
+  EXPECT_NEAR(own[1], 3e-3, 6e-4);
+  const auto common = SeveralDrives(99, {1e-3, 3e-3}).found();
+  EXPECT_EQ(common[0], common[1]);
+  EXPECT_GT(common[0], 1.3e-3);
+  EXPECT_LT(common[0], 3e-3);
 }
 
 TEST(Joint, straight_motion_alone_is_refused_and_names_what_is_missing) {

@@ -54,6 +54,16 @@ TEST(SearchClock, finds_a_delay_to_its_step) {
   EXPECT_NEAR(found(-0.13, 0.0).delay, -0.13, 0.011);
 }
 
+// Every tenth match of scans is wrong by as much as a match can be, always to one side.
+TEST(SearchClock, finds_a_delay_beside_matches_that_are_wrong) {
+  const vehicle::DriveModel model = turning_from(0.0);
+  measurement::FitData data = measured(model, 0.2, 0.0);
+  for (std::size_t k = 0; k < data.pairs.size(); k += 10) data.pairs[k].motion.yaw = 3.1;
+  const ClockStart clock = search_clock({&data, 1});
+  EXPECT_NEAR(clock.delay, 0.2, 0.011);
+  EXPECT_EQ(clock.rate, 0.0);
+}
+
 TEST(SearchClock, finds_clocks_that_run_apart_by_a_thousandth) {
   for (const double rate : {-1e-3, 1e-3}) {
     const ClockStart clock = found(0.1, rate);

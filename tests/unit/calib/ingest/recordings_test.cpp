@@ -88,6 +88,15 @@ TEST(Sweeps, a_head_that_turns_once_a_scan_is_reported) {
   EXPECT_FALSE(given.front().scans[0].time_increment);
 }
 
+TEST(Sweeps, beams_in_one_direction_turn_no_head) {
+  std::vector<Recording> given = scanned(std::nullopt);
+  for (Scan& scan : given.front().scans) scan.angle_increment = 0.0;
+  const auto sweeping = with_sweeps(Recordings(given));
+  ASSERT_TRUE(sweeping);
+  EXPECT_EQ(sweeping->stamps().turn, 0.0);
+  EXPECT_EQ(sweeping->stamps().sweep, 0.0);
+}
+
 TEST(Sweeps, stated_times_of_beams_are_believed) {
   const std::vector<Recording> given = scanned(1e-4);
   EXPECT_FALSE(with_sweeps(Recordings(given)));

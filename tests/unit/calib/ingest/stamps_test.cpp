@@ -69,6 +69,20 @@ TEST(EvenStamps, are_in_order_from_the_first_on) {
   EXPECT_TRUE(std::is_sorted(even->t.begin(), even->t.end())) << even->t[0] << " " << even->t[1];
 }
 
+// Two samples that were held up for a period come with the third, and the pace goes on from there.
+TEST(EvenStamps, put_the_second_sample_not_before_the_first) {
+  const auto truth = evenly(2000);
+  auto given = late(truth, 3e-3);
+  given[0] = given[1] = truth[1];
+  given[2] = truth[1] + 0.9 * kPeriod;
+  given[3] = truth[3] + 1e-3;
+  ASSERT_TRUE(std::is_sorted(given.begin(), given.end()));
+  const auto even = even_stamps(given);
+  ASSERT_TRUE(even);
+  EXPECT_LE(even->t[0], even->t[1]);
+  EXPECT_TRUE(std::is_sorted(even->t.begin(), even->t.end()));
+}
+
 TEST(EvenStamps, keep_lost_samples_and_pauses) {
   std::vector<double> truth;
   std::mt19937 engine(selection::kSeed);
@@ -170,6 +184,19 @@ TEST(EvenTicks, are_even_where_counts_grow_by_number_and_not_by_stamp) {
   EXPECT_FALSE(even_ticks(counted(jittered, jittered))) << "taken when they are stamped";
   EXPECT_FALSE(even_ticks(counted(std::vector<double>(3000, 100.0), jittered))) << "standing still";
   EXPECT_FALSE(even_ticks(Recording{}));
+}
+
+// A driver sends three samples at a time, stamps the second as the first, and begins to count anew.
+TEST(EvenTicks, are_even_where_the_second_of_three_bears_the_stamp_of_the_first) {
+  const auto truth = evenly(3000);
+  std::vector<double> stamps = truth;
+  for (std::size_t k = 1; k < stamps.size(); k += 3) stamps[k] = stamps[k - 1];
+  Recording recording = counted(truth, stamps);
+  for (std::size_t k = 0; k < truth.size(); ++k)
+    recording.ticks[k].segment = static_cast<std::int32_t>(k / 3);
+  const auto even = even_ticks(recording);
+  ASSERT_TRUE(even);
+  EXPECT_LT(spread(even->t, truth), 0.1 * spread(stamps, truth));
 }
 
 TEST(EvenTicks, sent_twice_happened_once) {

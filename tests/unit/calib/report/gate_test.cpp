@@ -281,11 +281,16 @@ TEST(Gate, names_a_common_factor_once_and_by_enough_motions_only) {
   Calibration calibration = sound();
   for (auto& [name, quantity] : calibration.parameters)
     if (!name.starts_with("lidar_")) quantity.value *= 0.5;
-  const GateResult firm = judge(calibration, kFirm);
-  ASSERT_EQ(firm.reasons.size(), 1U) << firm.reasons[1];
-  VerdictEvidence few{true, 19, 0, {}};
-  few.pairs = 19;
-  EXPECT_NE(judge(calibration, few).reasons, firm.reasons);
+  constexpr const char* kAll = "both wheel diameters and the track width come out";
+  VerdictEvidence evidence{true, 20, 0, {}};
+  evidence.pairs = 20;
+  const GateResult enough = judge(calibration, evidence);
+  ASSERT_EQ(enough.reasons.size(), 1U) << enough.reasons[1];
+  EXPECT_NE(enough.reasons[0].find(kAll), std::string::npos) << enough.reasons[0];
+  evidence.pairs = 19;
+  for (const std::string& reason : judge(calibration, evidence).reasons)
+    EXPECT_EQ(reason.find(kAll), std::string::npos) << reason;
+  EXPECT_NE(judge(calibration, kFirm).reasons[0].find(kAll), std::string::npos);
 }
 
 TEST(PoorMatches, are_told_where_few_of_those_tried_are_left) {

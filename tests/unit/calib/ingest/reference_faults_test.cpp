@@ -1,0 +1,104 @@
+// Faults of the reference that are undone, and clocks that were set, on streams made by hand.
+#include "calib/ingest/reference_faults.hpp"
+
+#include <gtest/gtest.h>
+
+#include <vector>
+
+#include "calib/ingest/stamp_check.hpp"
+
+namespace odomcalib::calib::ingest::reference_faults_test {
+namespace {
+
+/// The third of a turn that begins after so many others, of 120 beams.
+Scan third_of_turn(int number, const std::string& sensor = "") {
+  Scan scan;
+  scan.t = 0.04 * number;
+  scan.angle_increment = kWholeTurn / 360.0;
+  scan.angle_min = math::wrap_angle(static_cast<double>(number % 3) * kWholeTurn / 3.0);
+  scan.ranges.assign(120, 1.0F + 0.01F * static_cast<float>(number));
+  scan.sensor = sensor;
+  return scan;
+}
+
+TEST(JoinedTurns, are_made_of_parts_that_go_on) {
+  Recording recording;
+  for (int k = 0; k < 60; ++k) recording.scans.push_back(third_of_turn(k));
+  const auto joined = with_joined_turns(recording);
+  ASSERT_TRUE(joined);
+  ASSERT_EQ(joined->scans.size(), 20U);
+  EXPECT_EQ(joined->scans[7].ranges.size(), 360U);
+  EXPECT_EQ(joined->scans[7].t, recording.scans[21].t);
+}
+
+TEST(JoinedTurns, are_of_one_lidar) {
+  Recording recording;
+  for (int k = 0; k < 60; ++k) recording.scans.push_back(third_of_turn(k, k % 2 == 0 ? "front" : "rear"));
+  EXPECT_FALSE(with_joined_turns(recording)) << "each part follows one of the other lidar";
+}
+
+TEST(JoinedTurns, are_of_beams_on_one_grid) {
+  Recording by_beam, by_time;
+  for (int k = 0; k < 60; ++k) {
+    const Scan part = third_of_turn(k);
+    by_beam.scans.push_back(part);
+    by_time.scans.push_back(part);
+    if (k % 2 == 0) continue;  // the first decides whether turns are looked for
+    for (std::size_t beam = 0; beam < part.ranges.size(); ++beam) {
+      by_beam.scans.back().angles.push_back(static_cast<float>(part.angle(beam)));
+      by_time.scans.back().times.push_back(1e-4F * static_cast<float>(beam));
+    }
+  }
+  EXPECT_FALSE(with_joined_turns(by_beam));
+  EXPECT_FALSE(with_joined_turns(by_time));
+}
+
+/// Poses of a steady way, 0.1 m from one to the next; the one of this number is sent again so many times.
+Recording sent_again(std::size_t number, std::size_t times) {
+  Recording recording;
+  for (std::size_t k = 0; k < 20; ++k)
+    for (std::size_t again = 0; again <= (k == number ? times : 0); ++again)
+      recording.poses.push_back(
+          {0.1 * static_cast<double>(recording.poses.size()), 0.1 * static_cast<double>(k), 0.0, 0.0});
+  return recording;
+}
+
+TEST(RepeatedPoses, are_left_out_up_to_three_in_a_row) {
+  for (const std::size_t times : {1U, 2U, 3U}) {
+    const Recording recording = sent_again(10, times);
+    const auto once = without_repeated_poses(recording);
+    ASSERT_TRUE(once) << times;
+    EXPECT_EQ(once->poses.size(), 20U) << times;
+    EXPECT_EQ(once->poses[10].t, recording.poses[10].t) << "the first of them stays";
+    EXPECT_EQ(once->discarded.back().count, times);
+  }
+  EXPECT_FALSE(without_repeated_poses(sent_again(10, 4))) << "the robot stands";
+  EXPECT_FALSE(without_repeated_poses(sent_again(0, 2))) << "nothing shows that it moved before";
+}
+
+/// Poses every 0.1 s from `before` on, and from `after` on.
+std::string told_of_clock(double before, double after) {
+  Recording recording;
+  for (int k = 0; k < 20; ++k)
+    recording.poses.push_back({(k < 10 ? before : after) + 0.1 * k, 0.0, 0.0, 0.0});
+  const auto error = clock_was_set(recording, Form::pose);
+  return error ? error->what : "";
+}
+
+// A date is one from 1e9 s on, the year 2001.
+TEST(ClockWasSet, tells_a_clock_that_counted_since_it_was_switched_on_from_one_that_showed_a_date) {
+  constexpr const char* kSinceBoot = "counted since it was switched on";
+  EXPECT_NE(told_of_clock(100.0, 1.7e9).find(kSinceBoot), std::string::npos);
+  EXPECT_NE(told_of_clock(100.0, 1.0e9 + 1.0).find(kSinceBoot), std::string::npos);
+  EXPECT_NE(told_of_clock(0.99e9, 1.01e9).find(kSinceBoot), std::string::npos);
+  for (const auto& [before, after] : {std::pair{100.0, 0.99e9}, std::pair{1.01e9, 1.7e9}}) {
+    const std::string told = told_of_clock(before, after);
+    EXPECT_NE(told.find("their clock was set while recording"), std::string::npos) << told;
+    EXPECT_EQ(told.find(kSinceBoot), std::string::npos) << told;
+  }
+  EXPECT_EQ(told_of_clock(100.0, 100.0 + 0.99e6), "") << "less than twelve days";
+  EXPECT_NE(told_of_clock(100.0, 100.0 + 1.01e6), "");
+}
+
+}  // namespace
+}  // namespace odomcalib::calib::ingest::reference_faults_test
