@@ -8,6 +8,7 @@
 #include "calib/comparison/settings.hpp"
 #include "calib/math/linear_solve.hpp"
 #include "calib/math/se2.hpp"
+#include "proto/base_quantities.hpp"
 
 namespace odomcalib::calib::comparison {
 namespace {
@@ -87,8 +88,9 @@ void compare_effects(const Calibration& before, const Calibration& after, Differ
 /// Counts are turned into metres by the mean diameter, and into turns by it over the track width: what a
 /// state says of that factor, with its relative deviation.
 std::optional<Estimate> factor_of(const State& state, bool of_turns) {
-  const auto left = state.find("left_wheel_diameter"), right = state.find("right_wheel_diameter");
-  const auto track = state.find("track_width");
+  const auto left = state.find(BaseQuantity::left_wheel_diameter),
+             right = state.find(BaseQuantity::right_wheel_diameter);
+  const auto track = state.find(BaseQuantity::track_width);
   if (!left || !right || (of_turns && !track)) return std::nullopt;
   double factor = 0.5 * (state.value(*left) + state.value(*right));
   Eigen::VectorXd gradient = Eigen::VectorXd::Zero(state.value.size());  // of its logarithm

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "proto/base_quantities.hpp"
+
 namespace odomcalib::calib::comparison {
 namespace {
 
@@ -106,7 +108,8 @@ std::vector<State> comparable(std::vector<State> states) {
 }
 
 std::optional<Estimate> mean_diameter(const State& state) {
-  const auto left = state.find("left_wheel_diameter"), right = state.find("right_wheel_diameter");
+  const auto left = state.find(BaseQuantity::left_wheel_diameter),
+             right = state.find(BaseQuantity::right_wheel_diameter);
   if (!left || !right) return std::nullopt;
   const Eigen::MatrixXd& c = state.covariance;
   const double variance = 0.25 * (c(*left, *left) + c(*right, *right) + 2.0 * c(*left, *right));

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "proto/base_quantities.hpp"
 #include "proto/calibration/calibration.hpp"
 #include "proto/calibration/scale.hpp"
 
@@ -23,6 +24,9 @@ struct State {
   std::optional<Scale> scale;  ///< of that reference
 
   [[nodiscard]] std::optional<Eigen::Index> find(const std::string& name) const;
+  [[nodiscard]] std::optional<Eigen::Index> find(BaseQuantity quantity) const {
+    return find(std::string(name_of(quantity)));
+  }
 };
 
 /// Fixed parameters, and those without a finite value and deviation, are left out. Where the covariance of

@@ -8,6 +8,7 @@
 
 #include "calib/math/vector2.hpp"
 #include "calib/odometry/correction.hpp"
+#include "proto/base_quantities.hpp"
 
 namespace odomcalib::calib::library {
 namespace {
@@ -15,8 +16,10 @@ namespace {
 constexpr const char* kTimeOffset = "time_offset";
 
 double metres_per_count_of(const RobotDescription& robot, const Calibration& calibration) {
-  const double left = calibration.parameter("left_wheel_diameter").value_or(robot.left_wheel_diameter);
-  const double right = calibration.parameter("right_wheel_diameter").value_or(robot.right_wheel_diameter);
+  const double left =
+      calibration.parameter(BaseQuantity::left_wheel_diameter).value_or(robot.left_wheel_diameter);
+  const double right =
+      calibration.parameter(BaseQuantity::right_wheel_diameter).value_or(robot.right_wheel_diameter);
   return std::max(left, right) * math::kPi / robot.ticks_per_rev;
 }
 

@@ -13,6 +13,7 @@
 
 #include "calib/library/drive.hpp"
 #include "calib/odometry/predict.hpp"
+#include "proto/base_quantities.hpp"
 
 #ifndef ODOMCALIB_LIBRARY_VERSION
 #define ODOMCALIB_LIBRARY_VERSION "unknown"
@@ -60,10 +61,10 @@ Refusal refusal_of(const Error& error) {
 std::optional<Refusal> unusable(const Calibration& calibration, const std::string& where) {
   if (const auto member = non_finite_value(calibration))
     return Refusal{ODOMCALIB_NOT_A_CALIBRATION, where + ": \"" + *member + "\" has no finite value"};
-  for (const char* name : {"left_wheel_diameter", "right_wheel_diameter", "track_width"})
-    if (!(calibration.parameter(name).value_or(0.0) > 0.0))
+  for (const BaseQuantity length : kDriveLengths)
+    if (!(calibration.parameter(length).value_or(0.0) > 0.0))
       return Refusal{ODOMCALIB_NOT_A_CALIBRATION,
-                     where + ": \"parameters." + name + "\" is no length above 0"};
+                     where + ": \"parameters." + name_of(length) + "\" is no length above 0"};
   const double counts = calibration.robot.ticks_per_rev;
   if (!(counts > 0.0) || !std::isfinite(counts))
     return Refusal{ODOMCALIB_NOT_A_CALIBRATION,
@@ -270,8 +271,10 @@ int odomcalib_odometry_velocity_covariance(const odomcalib_odometry* odometry, d
 int odomcalib_odometry_lidar_pose(const odomcalib_odometry* odometry, double pose[3]) {
   if (odometry == nullptr || pose == nullptr) return ODOMCALIB_INVALID_ARGUMENT;
   return updated(const_cast<odomcalib_odometry*>(odometry), [&](const Drive& drive) {
-    const auto x = drive.calibration().parameter("lidar_x"), y = drive.calibration().parameter("lidar_y"),
-               yaw = drive.calibration().parameter("lidar_yaw");
+    const Calibration& calibration = drive.calibration();
+    const auto x = calibration.parameter(BaseQuantity::lidar_x),
+               y = calibration.parameter(BaseQuantity::lidar_y),
+               yaw = calibration.parameter(BaseQuantity::lidar_yaw);
     return x && y && yaw ? give(math::Pose{*x, *y, *yaw}, pose) : static_cast<int>(ODOMCALIB_NOT_KNOWN);
   });
 }

@@ -11,12 +11,14 @@
 #include "calib/terms/fitted_smooth_term.hpp"
 #include "calib/terms/lidar_effect.hpp"
 #include "calib/terms/smooth_term_effect.hpp"
+#include "proto/base_quantities.hpp"
 
 namespace odomcalib::calib::odometry {
 namespace {
 
-double value_or(const Calibration& calibration, const std::string& name, double otherwise) {
-  return calibration.parameter(name).value_or(otherwise);
+/// The robot's own value where the calibration states none.
+double value_of(const Calibration& calibration, BaseQuantity length) {
+  return calibration.parameter(length).value_or(calibration.robot.*member_of(length));
 }
 
 /// A term that goes up and down with time begins the next drive anywhere, unless it rounds off a drift.
@@ -84,20 +86,19 @@ std::vector<double> deviations_of(const EffectResult& result, std::size_t count)
 /// Covariance of radii, track width and mount in the order of the parameter vector, m and rad; zero where the
 /// file has none, or no finite one.
 Eigen::MatrixXd base_covariance(const Calibration& calibration) {
-  static constexpr std::array kNames = {
-      "left_wheel_diameter", "right_wheel_diameter", "track_width", "lidar_x", "lidar_y", "lidar_yaw"};
-  static constexpr std::array kOfDiameter = {0.5, 0.5, 1.0, 1.0, 1.0, 1.0};
   const auto& order = calibration.covariance_order;
   const auto place = [&](std::size_t k) {
-    return static_cast<std::size_t>(std::find(order.begin(), order.end(), kNames.at(k)) - order.begin());
+    return static_cast<std::size_t>(std::find(order.begin(), order.end(), kBaseQuantities.at(k).name) -
+                                    order.begin());
   };
   Eigen::MatrixXd covariance = Eigen::MatrixXd::Zero(vehicle::kBaseCount, vehicle::kBaseCount);
   if (calibration.covariance.size() != order.size()) return covariance;
-  for (std::size_t a = 0; a < kNames.size(); ++a)
-    for (std::size_t b = 0; b < kNames.size(); ++b)
+  const auto of_stated = [](std::size_t k) { return 1.0 / kBaseQuantities.at(k).per_fitted; };
+  for (std::size_t a = 0; a < kBaseQuantities.size(); ++a)
+    for (std::size_t b = 0; b < kBaseQuantities.size(); ++b)
       if (place(a) < order.size() && place(b) < order.size())
         covariance(static_cast<Eigen::Index>(a), static_cast<Eigen::Index>(b)) =
-            kOfDiameter.at(a) * kOfDiameter.at(b) * calibration.covariance[place(a)][place(b)];
+            of_stated(a) * of_stated(b) * calibration.covariance[place(a)][place(b)];
   return covariance.allFinite() ? covariance
                                 : Eigen::MatrixXd::Zero(vehicle::kBaseCount, vehicle::kBaseCount);
 }
@@ -131,11 +132,9 @@ double DriveClock::at(double stamp) const {
 
 Correction correction_of(const Calibration& calibration, bool time_is_known) {
   wheels::BaseParameters base;
-  base.left_radius =
-      value_or(calibration, "left_wheel_diameter", calibration.robot.left_wheel_diameter) / 2.0;
-  base.right_radius =
-      value_or(calibration, "right_wheel_diameter", calibration.robot.right_wheel_diameter) / 2.0;
-  base.track_width = value_or(calibration, "track_width", calibration.robot.track_width);
+  base.left_radius = value_of(calibration, BaseQuantity::left_wheel_diameter) / 2.0;
+  base.right_radius = value_of(calibration, BaseQuantity::right_wheel_diameter) / 2.0;
+  base.track_width = value_of(calibration, BaseQuantity::track_width);
   const Eigen::VectorXd start = vehicle::to_vector(base);
   std::vector<double> values(start.begin(), start.end()), deviations(values.size(), 0.0);
   Correction correction;
@@ -188,9 +187,9 @@ std::vector<std::string> unknown_effects(const Calibration& calibration) {
 Calibration nominal_calibration(const RobotDescription& robot) {
   Calibration calibration;
   calibration.robot = robot;
-  calibration.parameters = {{"left_wheel_diameter", {robot.left_wheel_diameter, -1.0, "m"}},
-                            {"right_wheel_diameter", {robot.right_wheel_diameter, -1.0, "m"}},
-                            {"track_width", {robot.track_width, -1.0, "m"}}};
+  for (const BaseQuantity length : kDriveLengths)
+    calibration.parameters.push_back(
+        {name_of(length), {robot.*member_of(length), -1.0, row_of(length).unit}});
   calibration.reasons = {"nominal values"};
   return calibration;
 }

@@ -2,6 +2,7 @@
 
 #include "calib/report/settings.hpp"
 #include "calib/terms/catalogue.hpp"
+#include "proto/base_quantities.hpp"
 
 namespace odomcalib::calib::report {
 namespace {
@@ -43,11 +44,11 @@ std::optional<NextTest> for_uncertainty(const Calibration& calibration) {
   const std::pair<std::string, Quantity>* worst = nullptr;
   const auto relative = [](const Quantity& q) { return q.value > 0.0 ? q.std / q.value : 0.0; };
   for (const auto& parameter : calibration.parameters) {
-    if (parameter.first.starts_with("lidar_")) continue;
+    if (!is_drive_length(parameter.first)) continue;
     if (worst == nullptr || relative(parameter.second) > relative(worst->second)) worst = &parameter;
   }
   if (worst == nullptr || relative(worst->second) <= settings::kGoodEnough) return std::nullopt;
-  const bool track = worst->first == "track_width";
+  const bool track = is_name_of(worst->first, BaseQuantity::track_width);
   return NextTest{track ? "turns" : "straights", worst->first + " is the least certain dimension"};
 }
 

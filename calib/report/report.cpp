@@ -6,6 +6,7 @@
 #include "calib/classical/closed_form.hpp"
 #include "calib/classical/linear.hpp"
 #include "calib/classical/manual.hpp"
+#include "proto/base_quantities.hpp"
 #include "proto/calibration/utc.hpp"
 
 namespace odomcalib::calib::report {
@@ -16,6 +17,11 @@ constexpr double kRadiusToDiameter = 2.0;
 double deviation(const Eigen::MatrixXd& covariance, Eigen::Index k) {
   if (k >= covariance.rows() || !(covariance(k, k) > 0.0)) return -1.0;
   return std::sqrt(covariance(k, k)) * (k < 2 ? kRadiusToDiameter : 1.0);
+}
+
+/// An entry of a list, in the unit of the quantity.
+std::pair<std::string, Quantity> of(BaseQuantity quantity, double value, double std) {
+  return {name_of(quantity), {value, std, row_of(quantity).unit}};
 }
 
 MethodResult refused_method(const std::string& name, const Error& error) {
@@ -32,10 +38,10 @@ MethodResult straight_method(std::span<const wheels::WheelMotion> samples,
   const classical::Ratio& r = ratio.value();
   MethodResult result;
   result.name = "straight";
-  result.parameters = {
-      {"left_wheel_diameter", {2.0 * nominal.left_radius * r.value, 2.0 * nominal.left_radius * r.std, "m"}},
-      {"right_wheel_diameter",
-       {2.0 * nominal.right_radius * r.value, 2.0 * nominal.right_radius * r.std, "m"}}};
+  result.parameters = {of(BaseQuantity::left_wheel_diameter, 2.0 * nominal.left_radius * r.value,
+                          2.0 * nominal.left_radius * r.std),
+                       of(BaseQuantity::right_wheel_diameter, 2.0 * nominal.right_radius * r.value,
+                          2.0 * nominal.right_radius * r.std)};
   result.rms = {r.rms, 0.0, 0.0};
   result.used = r.used;
   result.discarded = r.discarded;
@@ -54,7 +60,8 @@ MethodResult spin_method(std::span<const wheels::WheelMotion> samples,
   const classical::Ratio& r = ratio.value();
   MethodResult result;
   result.name = "spin";
-  result.parameters = {{"track_width", {nominal.track_width * r.value, nominal.track_width * r.std, "m"}}};
+  result.parameters = {
+      of(BaseQuantity::track_width, nominal.track_width * r.value, nominal.track_width * r.std)};
   result.rms = {0.0, 0.0, r.rms};
   result.used = r.used;
   result.discarded = r.discarded;
@@ -95,9 +102,9 @@ MethodResult linear_method(std::span<const wheels::WheelMotion> samples,
       linear.matrix, (nominal.left_radius + nominal.right_radius) / 2.0, nominal.track_width);
   MethodResult result;
   result.name = "linear";
-  result.parameters = {{"left_wheel_diameter", {2.0 * reading.left_radius, -1.0, "m"}},
-                       {"right_wheel_diameter", {2.0 * reading.right_radius, -1.0, "m"}},
-                       {"track_width", {reading.track_width, -1.0, "m"}}};
+  result.parameters = {of(BaseQuantity::left_wheel_diameter, 2.0 * reading.left_radius, -1.0),
+                       of(BaseQuantity::right_wheel_diameter, 2.0 * reading.right_radius, -1.0),
+                       of(BaseQuantity::track_width, reading.track_width, -1.0)};
   result.rms = correction.rms;
   result.used = linear.used;
   result.discarded = samples.size() - linear.used;
@@ -107,18 +114,18 @@ MethodResult linear_method(std::span<const wheels::WheelMotion> samples,
 }  // namespace
 
 std::vector<std::string> base_quantity_names() {
-  return {"left_wheel_diameter", "right_wheel_diameter", "track_width", "lidar_x", "lidar_y", "lidar_yaw"};
+  std::vector<std::string> names;
+  for (const BaseQuantityRow& row : kBaseQuantities) names.emplace_back(row.name);
+  return names;
 }
 
 QuantityList base_quantities(const wheels::BaseParameters& base, const Eigen::MatrixXd& covariance) {
   const double values[] = {2.0 * base.left_radius, 2.0 * base.right_radius,
                            base.track_width,       base.mount.x,
                            base.mount.y,           math::wrap_angle(base.mount.yaw)};
-  const auto names = base_quantity_names();
   QuantityList list;
-  for (std::size_t k = 0; k < names.size(); ++k)
-    list.push_back(
-        {names[k], {values[k], deviation(covariance, static_cast<Eigen::Index>(k)), k == 5 ? "rad" : "m"}});
+  for (std::size_t k = 0; k < kBaseQuantities.size(); ++k)
+    list.push_back(of(kBaseQuantities[k].id, values[k], deviation(covariance, static_cast<Eigen::Index>(k))));
   return list;
 }
 

@@ -13,6 +13,7 @@
 #include "calib/report/settings.hpp"
 #include "calib/validation/drive_error.hpp"
 #include "calib/validation/settings.hpp"
+#include "proto/base_quantities.hpp"
 
 namespace odomcalib::calib::report {
 namespace {
@@ -171,6 +172,7 @@ std::string parts_text(const VerdictEvidence& evidence) {
 // --- Lengths ---------------------------------------------------------------------------------------------
 
 struct Length {
+  BaseQuantity id = BaseQuantity::track_width;
   std::string name;
   Quantity quantity;
   double nominal = 0.0;
@@ -182,12 +184,6 @@ struct Length {
   [[nodiscard]] bool is_positive() const { return std::isfinite(quantity.value) && quantity.value > 0.0; }
 };
 
-double nominal_value(const RobotDescription& robot, const std::string& name) {
-  if (name == "left_wheel_diameter") return robot.left_wheel_diameter;
-  if (name == "right_wheel_diameter") return robot.right_wheel_diameter;
-  return robot.track_width;
-}
-
 std::optional<double> relative_deviation(const QuantityList& quantities, const std::string& name) {
   for (const auto& [own, quantity] : quantities)
     if (own == name) return quantity.std / std::abs(quantity.value);
@@ -197,8 +193,9 @@ std::optional<double> relative_deviation(const QuantityList& quantities, const s
 std::vector<Length> lengths_of(const Calibration& calibration, const VerdictEvidence& evidence) {
   std::vector<Length> lengths;
   for (const auto& [name, quantity] : calibration.parameters) {
-    if (name.starts_with("lidar_")) continue;
-    Length length{name, quantity, nominal_value(calibration.robot, name)};
+    const auto id = base_quantity_from(name);
+    if (!id || !is_drive_length(*id)) continue;
+    Length length{*id, name, quantity, nominal_value(calibration.robot, *id).value_or(0.0)};
     length.measured = relative_deviation(evidence.measured, name).value_or(length.relative());
     lengths.push_back(length);
   }
@@ -209,10 +206,10 @@ constexpr const char* kWalls = "drive where the lidar sees walls on all sides";
 constexpr const char* kCorrect =
     "correct robot.toml, or the recording, as the first reason says, and solve again";
 
-std::string motion_for(const std::string& name, const VerdictEvidence& evidence) {
+std::string motion_for(BaseQuantity length, const VerdictEvidence& evidence) {
   if (evidence.missing_motion) return *evidence.missing_motion;
-  return name == "track_width" ? "more turns on the spot, both ways"
-                               : "longer straight lines, forward and backward";
+  return length == BaseQuantity::track_width ? "more turns on the spot, both ways"
+                                             : "longer straight lines, forward and backward";
 }
 
 /// A finding from few pairs may as well be a few failed matches.
@@ -235,7 +232,7 @@ Objections undetermined_lengths(const std::vector<Length>& lengths, const Verdic
                          (length.measured < 1.0 ? "is determined to " + percent(length.measured) + " only"
                                                 : std::string("is not determined"));
     reason += "; to fix that, ";
-    const std::string motion = "record " + motion_for(length.name, evidence);
+    const std::string motion = "record " + motion_for(length.id, evidence);
     reason += are_in_part(evidence) ? std::string(kWalls) + ": " + parts_text(evidence) : motion;
     found.push_back(refusal(reason, (are_in_part(evidence) ? kWalls : motion) + ", and solve again"));
   }
@@ -287,9 +284,9 @@ std::optional<Objection> common_factor(const Calibration& calibration, const Ver
   for (const Length& length : lengths) {
     if (!length.is_determined() || !length.is_positive() || !(length.nominal > 0.0)) return std::nullopt;
     const double ratio = length.quantity.value / length.nominal;
-    if (length.name == "left_wheel_diameter")
+    if (length.id == BaseQuantity::left_wheel_diameter)
       ratios.left = ratio;
-    else if (length.name == "right_wheel_diameter")
+    else if (length.id == BaseQuantity::right_wheel_diameter)
       ratios.right = ratio;
     else
       ratios.track = ratio;
@@ -346,7 +343,7 @@ Objections lengths(const Calibration& calibration, const VerdictEvidence& eviden
 
 /// Both may be right: what is called front decides.
 Objections lidar_yaw(const Calibration& calibration, const VerdictEvidence& evidence) {
-  const auto yaw = calibration.parameter("lidar_yaw");
+  const auto yaw = calibration.parameter(BaseQuantity::lidar_yaw);
   if (!yaw || !calibration.robot.lidar_pose || names_no_cause(evidence)) return {};
   const double apart = math::wrap_angle(*yaw - (*calibration.robot.lidar_pose)[2]);
   if (!(std::abs(apart) > classical::settings::kFarYaw_rad)) return {};
@@ -427,7 +424,7 @@ Objections estimators_apart(const Calibration& calibration, const VerdictEvidenc
   Objections found;
   for (const auto& [name, ours] : joint->parameters)
     for (const auto& [other, theirs] : closed->parameters) {
-      if (name != other || name.starts_with("lidar_")) continue;
+      if (name != other || !is_drive_length(name)) continue;
       const double apart = theirs.value - ours.value, sigma = std::hypot(ours.std, theirs.std);
       const double by_sigma = std::abs(apart) / (settings::kEstimatorsApart * sigma),
                    by_share = std::abs(apart) / (settings::kEstimatorsApartShare * std::abs(ours.value));

@@ -9,6 +9,8 @@
 #include <map>
 #include <optional>
 
+#include "proto/base_quantities.hpp"
+
 namespace odomcalib::cli {
 namespace {
 
@@ -23,7 +25,7 @@ constexpr std::array<double, 2> kShortestWheel = {40.0, 160.0};
 class BaseDrawing {
  public:
   explicit BaseDrawing(const Calibration& calibration) : calibration_(calibration) {
-    const double track = length("track_width", calibration.robot.track_width).value_or(0.0);
+    const double track = length(BaseQuantity::track_width).value_or(0.0);
     scale_ = track > 0.0 ? kTrack / track : 0.0;
   }
 
@@ -32,8 +34,8 @@ class BaseDrawing {
         out(), "<svg class=\"base\" viewBox=\"0 0 {} {}\" role=\"img\" aria-label=\"the base from above\">\n",
         kWidth, kHeight);
     body();
-    wheel(-1.0, length("left_wheel_diameter", calibration_.robot.left_wheel_diameter));
-    wheel(1.0, length("right_wheel_diameter", calibration_.robot.right_wheel_diameter));
+    wheel(-1.0, length(BaseQuantity::left_wheel_diameter));
+    wheel(1.0, length(BaseQuantity::right_wheel_diameter));
     lidars();
     for (std::size_t k = 0; k < findings.size(); ++k) marker(findings[k].spot, k + 1);
     return text_ + "</svg>\n";
@@ -42,9 +44,9 @@ class BaseDrawing {
  private:
   std::back_insert_iterator<std::string> out() { return std::back_inserter(text_); }
 
-  [[nodiscard]] std::optional<double> length(const char* name, double stated) const {
-    if (const auto value = calibration_.parameter(name); value && *value > 0.0) return value;
-    return stated > 0.0 ? std::optional(stated) : std::nullopt;
+  [[nodiscard]] std::optional<double> length(BaseQuantity of) const {
+    if (const auto value = calibration_.parameter(of); value && *value > 0.0) return value;
+    return nominal_value(calibration_.robot, of);
   }
 
   /// Drawing coordinates of a place on the base, m forward and to the left.
@@ -89,8 +91,9 @@ class BaseDrawing {
   }
 
   [[nodiscard]] std::optional<std::array<double, 3>> found_lidar() const {
-    const auto x = calibration_.parameter("lidar_x"), y = calibration_.parameter("lidar_y"),
-               yaw = calibration_.parameter("lidar_yaw");
+    const auto x = calibration_.parameter(BaseQuantity::lidar_x),
+               y = calibration_.parameter(BaseQuantity::lidar_y),
+               yaw = calibration_.parameter(BaseQuantity::lidar_yaw);
     if (!x || !y || !yaw) return std::nullopt;
     return std::array{*x, *y, *yaw};
   }

@@ -17,27 +17,17 @@
 #include "daemon/cli/left_out_lines.hpp"
 #include "daemon/cli/plain_words.hpp"
 #include "daemon/cli/report_sections.hpp"
+#include "proto/base_quantities.hpp"
 #include "proto/calibration/scale.hpp"
 #include "proto/calibration/utc.hpp"
 
 namespace odomcalib::cli {
 namespace {
 
-/// Zero is a length that nobody stated.
-std::optional<double> stated(double length) { return length > 0.0 ? std::optional(length) : std::nullopt; }
-
 std::optional<double> nominal_of(const RobotDescription& robot, const std::string& name) {
-  if (name == "left_wheel_diameter") return stated(robot.left_wheel_diameter);
-  if (name == "right_wheel_diameter") return stated(robot.right_wheel_diameter);
-  if (name == "track_width") return stated(robot.track_width);
-  if (!robot.lidar_pose) return std::nullopt;
-  if (name == "lidar_x") return (*robot.lidar_pose)[0];
-  if (name == "lidar_y") return (*robot.lidar_pose)[1];
-  if (name == "lidar_yaw") return (*robot.lidar_pose)[2];
-  return std::nullopt;
+  const auto quantity = base_quantity_from(name);
+  return quantity ? nominal_value(robot, *quantity) : std::nullopt;
 }
-
-bool is_length_of_drive(const std::string& name) { return !name.starts_with("lidar_"); }
 
 std::string twice(double deviation, const Display& show) {
   return deviation >= 0.0 ? number(2.0 * deviation * show.factor, show.digits) : "-";
@@ -51,7 +41,7 @@ std::vector<std::string> parameter_row(const RobotDescription& robot, const std:
                                number(quantity.value * show.factor, show.digits), twice(quantity.std, show)};
   if (scale) row.push_back(twice(absolute_deviation(quantity, *scale), show));
   row.push_back(show.unit);
-  const bool relative = nominal && *nominal != 0.0 && is_length_of_drive(name);
+  const bool relative = nominal && *nominal != 0.0 && is_drive_length(name);
   row.push_back(relative ? fmt::format("{:+.3f} %", 100.0 * (quantity.value / *nominal - 1.0)) : "");
   return row;
 }

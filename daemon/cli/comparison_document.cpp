@@ -10,6 +10,7 @@
 #include "daemon/cli/calibration_document.hpp"
 #include "daemon/cli/display.hpp"
 #include "proto/angles.hpp"
+#include "proto/base_quantities.hpp"
 #include "proto/calibration/utc.hpp"
 
 namespace odomcalib::cli {
@@ -338,10 +339,10 @@ std::vector<Section> sections_of(const ComparedRobot& robot, const ComparisonOpt
 }
 
 /// Deviation of the newest calibration's value from nominal, %.
-std::string over_nominal(const Calibration& calibration, const char* name, double nominal) {
-  const auto value = calibration.parameter(name);
-  if (!value || !(nominal > 0.0) || !std::isfinite(*value)) return "-";
-  return fmt::format("{:+.2f}", 100.0 * (*value / nominal - 1.0));
+std::string over_nominal(const Calibration& calibration, BaseQuantity length) {
+  const auto value = calibration.parameter(length), nominal = nominal_value(calibration.robot, length);
+  if (!value || !nominal || !std::isfinite(*value)) return "-";
+  return fmt::format("{:+.2f}", 100.0 * (*value / *nominal - 1.0));
 }
 
 /// By the values before.
@@ -354,15 +355,14 @@ std::vector<std::string> fleet_row(const ComparedRobot& robot, const std::option
   const ComparedFile& newest = robot.files.back();
   const Calibration& calibration = newest.calibration;
   const auto& since = robot.standing.since_last;
-  std::vector<std::string> row{
-      robot.robot_id.empty() ? file_name(newest.path) : robot.robot_id,
-      calibration.driven ? day_of(calibration.driven->begin) : "-",
-      over_nominal(calibration, "left_wheel_diameter", calibration.robot.left_wheel_diameter),
-      over_nominal(calibration, "right_wheel_diameter", calibration.robot.right_wheel_diameter),
-      over_nominal(calibration, "track_width", calibration.robot.track_width),
-      comparison::name_of(robot.standing.urgency),
-      metre_of_change(robot),
-      since ? what_changed(*since) : "-"};
+  std::vector<std::string> row{robot.robot_id.empty() ? file_name(newest.path) : robot.robot_id,
+                               calibration.driven ? day_of(calibration.driven->begin) : "-",
+                               over_nominal(calibration, BaseQuantity::left_wheel_diameter),
+                               over_nominal(calibration, BaseQuantity::right_wheel_diameter),
+                               over_nominal(calibration, BaseQuantity::track_width),
+                               comparison::name_of(robot.standing.urgency),
+                               metre_of_change(robot),
+                               since ? what_changed(*since) : "-"};
   if (!bound) return row;
   const auto found =
       robot.trends.empty() ? std::nullopt : comparison::passing(robot.trends.front().parameters, *bound);

@@ -18,6 +18,7 @@
 #include "daemon/cli/lidar_joint_place.hpp"
 #include "daemon/cli/usable_calibration.hpp"
 #include "odomcalib_version.hpp"
+#include "proto/base_quantities.hpp"
 #include "proto/calibration/report_data.hpp"
 #include "proto/recording/wheel_motion.hpp"
 
@@ -40,9 +41,9 @@ std::optional<double> counts_a_turn(const Calibration& calibration) {
 std::optional<std::array<double, 3>> lidar_pose(const Calibration& calibration) {
   std::array<double, 3> pose{};
   for (std::size_t k = 0; k < pose.size(); ++k) {
-    constexpr std::array kNames = {"lidar_x", "lidar_y", "lidar_yaw"};
-    const auto found = std::find_if(calibration.parameters.begin(), calibration.parameters.end(),
-                                    [&](const auto& one) { return one.first == kNames.at(k); });
+    const auto found =
+        std::find_if(calibration.parameters.begin(), calibration.parameters.end(),
+                     [&](const auto& one) { return is_name_of(one.first, kLidarPoseQuantities.at(k)); });
     if (found == calibration.parameters.end() || !(found->second.std >= 0.0)) return std::nullopt;
     pose.at(k) = found->second.value;
   }
@@ -257,8 +258,8 @@ std::vector<std::string> not_held(const Calibration& calibration, const std::str
     const std::string value = placement.parameter.empty() ? "" : fmt::format(" = {:.4g} {}", q.value, q.unit);
     sentences.push_back(fmt::format("not held here: {}{}", name, value));
   }
-  const auto left = calibration.parameter("left_wheel_diameter"),
-             right = calibration.parameter("right_wheel_diameter");
+  const auto left = calibration.parameter(BaseQuantity::left_wheel_diameter),
+             right = calibration.parameter(BaseQuantity::right_wheel_diameter);
   if (what == "ros_arduino" && left && right && *left != *right)
     sentences.push_back(
         fmt::format("not held here: left and right wheel differ by {:.2f} %, this is their mean",

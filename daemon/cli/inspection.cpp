@@ -7,6 +7,7 @@
 #include "calib/ingest/put_right.hpp"
 #include "calib/ingest/recording_check.hpp"
 #include "daemon/cli/settings.hpp"
+#include "proto/base_quantities.hpp"
 
 namespace odomcalib::cli {
 namespace {
@@ -79,11 +80,14 @@ struct NominalLength {
   double usual;
 };
 
+constexpr NominalLength nominal_length(BaseQuantity length, double usual) {
+  return {name_of(length), member_of(length), usual};
+}
+
 constexpr std::array kNominals = {
-    NominalLength{"left_wheel_diameter", &RobotDescription::left_wheel_diameter, settings::kUsualDiameter_m},
-    NominalLength{"right_wheel_diameter", &RobotDescription::right_wheel_diameter,
-                  settings::kUsualDiameter_m},
-    NominalLength{"track_width", &RobotDescription::track_width, settings::kUsualTrack_m},
+    nominal_length(BaseQuantity::left_wheel_diameter, settings::kUsualDiameter_m),
+    nominal_length(BaseQuantity::right_wheel_diameter, settings::kUsualDiameter_m),
+    nominal_length(BaseQuantity::track_width, settings::kUsualTrack_m),
     NominalLength{"ticks_per_rev", &RobotDescription::ticks_per_rev, settings::kUsualTicks}};
 
 RobotDescription filled_in(RobotDescription robot) {

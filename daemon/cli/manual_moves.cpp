@@ -12,6 +12,7 @@
 #include "calib/classical/settings.hpp"
 #include "daemon/cli/display.hpp"
 #include "daemon/cli/settings.hpp"
+#include "proto/base_quantities.hpp"
 
 namespace odomcalib::cli {
 namespace {
@@ -45,9 +46,7 @@ double length(const ordered_json& robot, const char* name) {
 
 RobotDescription robot_of(const ordered_json& robot) {
   RobotDescription description;
-  description.left_wheel_diameter = length(robot, "left_wheel_diameter");
-  description.right_wheel_diameter = length(robot, "right_wheel_diameter");
-  description.track_width = length(robot, "track_width");
+  for (const BaseQuantity one : kDriveLengths) description.*member_of(one) = length(robot, name_of(one));
   description.ticks_per_rev = length(robot, "ticks_per_rev");
   return description;
 }
@@ -155,8 +154,8 @@ std::optional<SquareRun> run_of(const DrivenMoves& driven, std::size_t round) {
 std::string percent(double factor) { return fmt::format("{:+.3f} %", 100.0 * (factor - 1.0)); }
 
 double in_force(const RobotDescription& robot, const std::string& name) {
-  if (name == "left_wheel_diameter") return robot.left_wheel_diameter;
-  return name == "right_wheel_diameter" ? robot.right_wheel_diameter : robot.track_width;
+  const auto length = base_quantity_from(name);
+  return length ? nominal_value(robot, *length).value_or(0.0) : 0.0;
 }
 
 ordered_json quantity(const Quantity& q) {
@@ -206,8 +205,8 @@ Result<Proposal> straight_proposal(const DrivenMoves& driven, const std::vector<
       calib::classical::propose_radii(moves.value(), base_of(proposal.robot), error_of(by_tape));
   if (!radii) return radii.error();
   const auto& found = radii.value();
-  proposal.parameters = {{"left_wheel_diameter", diameter(found.left)},
-                         {"right_wheel_diameter", diameter(found.right)}};
+  proposal.parameters = {{name_of(BaseQuantity::left_wheel_diameter), diameter(found.left)},
+                         {name_of(BaseQuantity::right_wheel_diameter), diameter(found.right)}};
   add_error(proposal, "E_s", found.scale);
   if (found.diameters) add_error(proposal, "E_d", *found.diameters);
   proposal.used = moves.value().size();
@@ -239,7 +238,7 @@ Result<Proposal> spin_proposal(const DrivenMoves& driven, const std::vector<doub
   const auto track = calib::classical::propose_track_width(turns, base_of(proposal.robot), error_of(by_tape));
   if (!track) return track.error();
   const Repeated& width = track.value().track_width;
-  proposal.parameters = {{"track_width", {width.mean, width.std, "m"}}};
+  proposal.parameters = {{name_of(BaseQuantity::track_width), {width.mean, width.std, "m"}}};
   add_error(proposal, "E_b", track.value().track);
   proposal.used = turns.size();
   proposal.left_out = driven.moves.size() - turns.size();
@@ -273,9 +272,9 @@ Result<Proposal> square_proposal(const DrivenMoves& driven, double side) {
     return Quantity{2.0 * radius, found.diameters.std < 0.0 ? -1.0 : std, "m"};
   };
   const double track_std = found.track.std < 0.0 ? -1.0 : found.track.std * base.track_width;
-  proposal.parameters = {{"left_wheel_diameter", diameter_of(lengths.left_radius)},
-                         {"right_wheel_diameter", diameter_of(lengths.right_radius)},
-                         {"track_width", {lengths.track_width, track_std, "m"}}};
+  proposal.parameters = {{name_of(BaseQuantity::left_wheel_diameter), diameter_of(lengths.left_radius)},
+                         {name_of(BaseQuantity::right_wheel_diameter), diameter_of(lengths.right_radius)},
+                         {name_of(BaseQuantity::track_width), {lengths.track_width, track_std, "m"}}};
   add_error(proposal, "E_d", found.diameters);
   add_error(proposal, "E_b", found.track);
   proposal.used = pairs.size();

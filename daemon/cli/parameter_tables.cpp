@@ -4,20 +4,18 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cstdint>
 #include <ctime>
 #include <nlohmann/json.hpp>
 #include <utility>
 
 #include "daemon/cli/display.hpp"
+#include "proto/base_quantities.hpp"
 
 namespace odomcalib::cli {
 namespace {
 
 using nlohmann::ordered_json;
-
-constexpr std::array kQuantities = {"left_wheel_diameter", "right_wheel_diameter", "track_width"};
 
 std::string millimetres(const ordered_json& object, const char* name) {
   const auto found = object.find(name);
@@ -91,11 +89,12 @@ std::string outcome_of(const ordered_json& entry) {
 
 Table history_table(const ordered_json& entries) {
   Table table{{"id", "when (UTC)", "by", "action", "outcome"}, {}};
-  for (const char* name : kQuantities) table.head.push_back(readable(name) + " mm");
+  for (const BaseQuantity length : kDriveLengths) table.head.push_back(readable(name_of(length)) + " mm");
   for (const auto& entry : entries) {
     table.rows.push_back({entry.value("id", ""), moment_of(entry.value("time", std::int64_t{0})),
                           user_of(entry), action_of(entry), outcome_of(entry)});
-    for (const char* name : kQuantities) table.rows.back().push_back(change_of(entry, name));
+    for (const BaseQuantity length : kDriveLengths)
+      table.rows.back().push_back(change_of(entry, name_of(length)));
   }
   return table;
 }
@@ -132,8 +131,9 @@ std::vector<std::string> written_lines(const ordered_json& entries, const std::s
 Section change_section(const ordered_json& result) {
   Section section{"", {}, {{"", "old -> new, mm"}, {}}};
   const auto after = result.value("after", ordered_json::object());
-  for (const char* name : kQuantities)
-    if (after.contains(name)) section.table.rows.push_back({readable(name), change_of(result, name)});
+  for (const BaseQuantity length : kDriveLengths)
+    if (const char* name = name_of(length); after.contains(name))
+      section.table.rows.push_back({readable(name), change_of(result, name)});
   return section;
 }
 

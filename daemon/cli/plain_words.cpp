@@ -14,6 +14,7 @@
 #include "calib/terms/parameter_meaning.hpp"
 #include "daemon/cli/settings.hpp"
 #include "proto/angles.hpp"
+#include "proto/base_quantities.hpp"
 
 namespace odomcalib::cli {
 namespace {
@@ -67,9 +68,9 @@ struct NominalErrors {
 
 std::optional<NominalErrors> nominal_errors(const Calibration& calibration) {
   const RobotDescription& robot = calibration.robot;
-  const auto left = calibration.parameter("left_wheel_diameter");
-  const auto right = calibration.parameter("right_wheel_diameter");
-  const auto track = calibration.parameter("track_width");
+  const auto left = calibration.parameter(BaseQuantity::left_wheel_diameter);
+  const auto right = calibration.parameter(BaseQuantity::right_wheel_diameter);
+  const auto track = calibration.parameter(BaseQuantity::track_width);
   if (!left || !right || !track || !(robot.left_wheel_diameter > 0.0) ||
       !(robot.right_wheel_diameter > 0.0) || !(robot.track_width > 0.0))
     return std::nullopt;
@@ -164,9 +165,9 @@ std::vector<Finding> findings_of(const Calibration& calibration, const EffectRes
 }
 
 /// Difference of a parameter from what was stated; nullopt within two deviations.
-std::optional<double> difference(const Calibration& calibration, const std::string& name, double stated) {
+std::optional<double> difference(const Calibration& calibration, BaseQuantity of, double stated) {
   for (const auto& [key, quantity] : calibration.parameters) {
-    if (key != name) continue;
+    if (!is_name_of(key, of)) continue;
     double by = quantity.value - stated;
     if (quantity.unit == "rad") by = std::remainder(by, 2.0 * std::numbers::pi);
     if (std::abs(by) > 2.0 * std::max(quantity.std, 0.0) && by != 0.0) return by;
@@ -174,10 +175,11 @@ std::optional<double> difference(const Calibration& calibration, const std::stri
   return std::nullopt;
 }
 
-void add_length(const Calibration& calibration, const std::string& name, double stated, Spot spot,
-                const char* words, std::vector<Finding>& findings) {
+void add_length(const Calibration& calibration, BaseQuantity length, Spot spot, const char* words,
+                std::vector<Finding>& findings) {
+  const double stated = nominal_value(calibration.robot, length).value_or(0.0);
   if (!(stated > 0.0)) return;
-  const auto by = difference(calibration, name, stated);
+  const auto by = difference(calibration, length, stated);
   if (!by) return;
   const std::string size =
       fmt::format("{} mm ({} %)", plain_number(1000.0 * *by), plain_number(100.0 * *by / stated));
@@ -188,13 +190,14 @@ void add_lidar(const Calibration& calibration, std::vector<Finding>& findings) {
   if (!calibration.robot.lidar_pose) return;
   const auto& stated = *calibration.robot.lidar_pose;
   std::vector<std::string> parts;
-  const auto add = [&](const char* name, double was, double factor, const char* unit, const char* words) {
-    if (const auto by = difference(calibration, name, was))
+  const auto add = [&](BaseQuantity quantity, double was, double factor, const char* unit,
+                       const char* words) {
+    if (const auto by = difference(calibration, quantity, was))
       parts.push_back(filled(words, *by, with_unit(*by * factor, unit)));
   };
-  add("lidar_x", stated[0], 1000.0, "mm", "{} further [ahead|back]");
-  add("lidar_y", stated[1], 1000.0, "mm", "{} further to the [left|right]");
-  add("lidar_yaw", stated[2], kDegrees, "degrees", "turned {} further to the [left|right]");
+  add(BaseQuantity::lidar_x, stated[0], 1000.0, "mm", "{} further [ahead|back]");
+  add(BaseQuantity::lidar_y, stated[1], 1000.0, "mm", "{} further to the [left|right]");
+  add(BaseQuantity::lidar_yaw, stated[2], kDegrees, "degrees", "turned {} further to the [left|right]");
   if (parts.empty()) return;
   std::string words = "lidar ";
   for (std::size_t k = 0; k < parts.size(); ++k)
@@ -265,13 +268,12 @@ std::string gain_sentence(const Calibration& calibration, const ReportData& data
 }
 
 std::vector<Finding> dimension_findings(const Calibration& calibration) {
-  const RobotDescription& robot = calibration.robot;
   std::vector<Finding> findings;
-  add_length(calibration, "left_wheel_diameter", robot.left_wheel_diameter, Spot::left_wheel,
+  add_length(calibration, BaseQuantity::left_wheel_diameter, Spot::left_wheel,
              "left wheel {} [larger|smaller] than stated", findings);
-  add_length(calibration, "right_wheel_diameter", robot.right_wheel_diameter, Spot::right_wheel,
+  add_length(calibration, BaseQuantity::right_wheel_diameter, Spot::right_wheel,
              "right wheel {} [larger|smaller] than stated", findings);
-  add_length(calibration, "track_width", robot.track_width, Spot::axle,
+  add_length(calibration, BaseQuantity::track_width, Spot::axle,
              "wheels {} [further apart|closer together] than stated", findings);
   add_lidar(calibration, findings);
   return findings;

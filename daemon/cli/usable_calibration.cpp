@@ -1,5 +1,7 @@
 #include "daemon/cli/usable_calibration.hpp"
 
+#include "proto/base_quantities.hpp"
+
 namespace odomcalib::cli {
 namespace {
 
@@ -18,16 +20,17 @@ Result<Calibration> read_finite_calibration(const std::string& path) {
 Result<Dimensions> dimensions_of(const Calibration& calibration, const std::string& where) {
   Dimensions out{};
   struct Wanted {
-    const char* name;
+    BaseQuantity length;
     double* value;
   };
-  for (const auto& [name, value] :
-       {Wanted{"left_wheel_diameter", &out.left}, Wanted{"right_wheel_diameter", &out.right},
-        Wanted{"track_width", &out.track}}) {
-    const auto stated = calibration.parameter(name);
+  for (const auto& [length, value] : {Wanted{BaseQuantity::left_wheel_diameter, &out.left},
+                                      Wanted{BaseQuantity::right_wheel_diameter, &out.right},
+                                      Wanted{BaseQuantity::track_width, &out.track}}) {
+    const auto stated = calibration.parameter(length);
     if (!stated && calibration.verdict == Verdict::refused) return refusal_of(calibration, where);
     if (!stated || !(*stated > 0.0))
-      return Error{ErrorCode::format, std::string("\"parameters.") + name + "\" is no length above 0", where,
+      return Error{ErrorCode::format,
+                   std::string("\"parameters.") + name_of(length) + "\" is no length above 0", where,
                    kRemedy};
     *value = *stated;
   }

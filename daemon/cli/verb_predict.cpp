@@ -19,6 +19,7 @@
 #include "daemon/cli/recordings.hpp"
 #include "daemon/cli/usable_calibration.hpp"
 #include "daemon/cli/verbs.hpp"
+#include "proto/base_quantities.hpp"
 #include "proto/calibration/calibration.hpp"
 #include "proto/discarded_json.hpp"
 #include "proto/file_bytes.hpp"
@@ -93,7 +94,8 @@ Result<Predicted> predicted(const PredictOptions& options) {
                            : calib::odometry::predict(recording, calibration.value());
   auto poses = finite_poses(std::move(path), options.recording);
   if (!poses) return poses.error();
-  return Predicted{std::move(poses).value(), calibration.value().parameter("track_width").value_or(0.0),
+  return Predicted{std::move(poses).value(),
+                   calibration.value().parameter(BaseQuantity::track_width).value_or(0.0),
                    left_out_of(recording), recording.repairs};
 }
 

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "daemon/service/dead_reckoning.hpp"
+#include "proto/base_quantities.hpp"
 
 namespace odomcalib {
 namespace {
@@ -13,18 +14,20 @@ namespace {
 ordered_json json_of(const routines::Pose& pose) { return {pose.x, pose.y, pose.yaw}; }
 
 ordered_json lengths(const RobotDescription& robot) {
-  return {{"left_wheel_diameter", robot.left_wheel_diameter},
-          {"right_wheel_diameter", robot.right_wheel_diameter},
-          {"track_width", robot.track_width},
-          {"ticks_per_rev", robot.ticks_per_rev}};
+  ordered_json body;
+  for (const BaseQuantity length : kDriveLengths) body[name_of(length)] = robot.*member_of(length);
+  body["ticks_per_rev"] = robot.ticks_per_rev;
+  return body;
 }
 
 }  // namespace
 
 std::array<double, 3> lidar_pose(const std::optional<Calibration>& applied, const Config& config) {
-  if (!applied || !applied->parameter("lidar_x")) return config.lidar_pose;
-  return {*applied->parameter("lidar_x"), applied->parameter("lidar_y").value_or(0.0),
-          applied->parameter("lidar_yaw").value_or(0.0)};
+  if (!applied || !applied->parameter(BaseQuantity::lidar_x)) return config.lidar_pose;
+  std::array<double, 3> pose{};
+  for (std::size_t k = 0; k < pose.size(); ++k)
+    pose.at(k) = applied->parameter(kLidarPoseQuantities.at(k)).value_or(0.0);
+  return pose;
 }
 
 std::array<double, 2> wheel_turns(const Leg& leg, double ticks_per_rev) {

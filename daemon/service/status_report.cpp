@@ -3,12 +3,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 #include "daemon/safety/obstacle.hpp"
 #include "daemon/service/settings.hpp"
 #include "odomcalib_version.hpp"
+#include "proto/base_quantities.hpp"
 
 namespace odomcalib {
 namespace {
@@ -182,12 +182,12 @@ std::optional<ordered_json> replaced_check(const Drive& drive, const WriteBack& 
 
 ordered_json robot_report(const Drive& drive) {
   const RobotDescription all = drive.robot();
-  return {{"left_wheel_diameter", all.left_wheel_diameter},
-          {"right_wheel_diameter", all.right_wheel_diameter},
-          {"track_width", all.track_width},
-          {"ticks_per_rev", all.ticks_per_rev},
-          {"in_controller", !drive.in_force.empty()},
-          {"robot_id", all.robot_id}};
+  ordered_json body;
+  for (const BaseQuantity length : kDriveLengths) body[name_of(length)] = all.*member_of(length);
+  body["ticks_per_rev"] = all.ticks_per_rev;
+  body["in_controller"] = !drive.in_force.empty();
+  body["robot_id"] = all.robot_id;
+  return body;
 }
 
 ordered_json motion_report(const MotionCount& recorded) {
@@ -337,17 +337,17 @@ ordered_json parameter_report(const Drive& drive, const Calibrator& calibrator,
                               const std::optional<Calibration>& calibration) {
   const auto& in_force = drive.in_force;
   const RobotDescription all = drive.robot();
-  const std::array<std::pair<const char*, double>, 3> values = {
-      {{"left_wheel_diameter", all.left_wheel_diameter},
-       {"right_wheel_diameter", all.right_wheel_diameter},
-       {"track_width", all.track_width}}};
   ordered_json list = ordered_json::array();
-  for (const auto& [name, value] : values) {
+  for (const BaseQuantity length : kDriveLengths) {
+    const double value = all.*member_of(length);
     const bool stored = std::any_of(in_force.begin(), in_force.end(),
-                                    [n = std::string(name)](const auto& p) { return p.quantity == n; });
-    ordered_json entry = {{"name", name}, {"unit", "m"}, {"value", nullptr}, {"calibrated", nullptr}};
+                                    [&](const auto& p) { return is_name_of(p.quantity, length); });
+    ordered_json entry = {{"name", name_of(length)},
+                          {"unit", row_of(length).unit},
+                          {"value", nullptr},
+                          {"calibrated", nullptr}};
     if (value > 0.0) entry["value"] = value;
-    const auto calibrated = calibration ? calibration->parameter(name) : std::nullopt;
+    const auto calibrated = calibration ? calibration->parameter(length) : std::nullopt;
     if (calibrated) entry["calibrated"] = *calibrated;
     // The remainder of rounding in the controller is applied in the corrected odometry.
     if (calibrated) entry["remainder"] = *calibrated - value;

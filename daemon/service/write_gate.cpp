@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "daemon/service/settings.hpp"
+#include "proto/base_quantities.hpp"
 
 namespace odomcalib {
 
@@ -85,7 +86,7 @@ std::optional<Error> absurd_quantity(const std::string& path, const Quantity& qu
 std::optional<Error> absurd(const Calibration& calibration, const NominalLengths& nominal) {
   namespace settings = service::settings;
   for (const auto& [name, quantity] : calibration.parameters) {
-    const bool angle = name == "lidar_yaw";
+    const bool angle = is_name_of(name, BaseQuantity::lidar_yaw);
     const auto length = nominal.values.find(name);
     const double known = length != nominal.values.end() ? length->second : 0.0;
     const double most = angle ? settings::kMostAngle_rad : settings::kMostLength_m;
@@ -102,9 +103,9 @@ std::optional<Error> absurd(const Calibration& calibration, const NominalLengths
 }
 
 ParameterMap present_lengths(const RobotDescription& robot) {
-  return {{"left_wheel_diameter", robot.left_wheel_diameter},
-          {"right_wheel_diameter", robot.right_wheel_diameter},
-          {"track_width", robot.track_width}};
+  ParameterMap lengths;
+  for (const BaseQuantity length : kDriveLengths) lengths[name_of(length)] = robot.*member_of(length);
+  return lengths;
 }
 
 }  // namespace odomcalib

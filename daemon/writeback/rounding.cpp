@@ -5,11 +5,12 @@
 #include <cmath>
 #include <limits>
 
+#include "proto/base_quantities.hpp"
+
 namespace odomcalib {
 namespace {
 
-using Geometry = std::array<double, 3>;  // left diameter, right diameter, track width
-constexpr std::array kDimensionNames = {"left_wheel_diameter", "right_wheel_diameter", "track_width"};
+using Geometry = std::array<double, kDriveLengths.size()>;  // in that order
 
 /// The two values of the controller's grid around the wanted one, or the wanted one where it has no step.
 std::vector<double> candidates(double wanted, const drivers::StoredParameter* held) {
@@ -36,14 +37,14 @@ double cost(const RoundingError& error) { return std::hypot(error.length, 0.5 * 
 
 RoundedParameters round_together(const std::map<std::string, double>& wanted,
                                  const std::vector<drivers::StoredParameter>& held) {
-  std::array<std::vector<double>, 3> choices;
+  std::array<std::vector<double>, kDriveLengths.size()> choices;
   Geometry exact{};
-  for (std::size_t i = 0; i < kDimensionNames.size(); ++i) {
-    const auto found = wanted.find(kDimensionNames[i]);
+  for (std::size_t i = 0; i < kDriveLengths.size(); ++i) {
+    const auto found = wanted.find(name_of(kDriveLengths[i]));
     const bool complete = found != wanted.end() && found->second > 0.0;
     if (!complete) return {wanted, {}};
     const auto stored = std::find_if(held.begin(), held.end(),
-                                     [&](const auto& h) { return h.quantity == kDimensionNames[i]; });
+                                     [&](const auto& h) { return is_name_of(h.quantity, kDriveLengths[i]); });
     exact[i] = found->second;
     choices[i] = candidates(exact[i], stored == held.end() ? nullptr : &*stored);
   }
@@ -56,9 +57,9 @@ RoundedParameters round_together(const std::map<std::string, double>& wanted,
         if (!(cost(error) < least)) continue;
         least = cost(error);
         best = {wanted, error};
-        best.values["left_wheel_diameter"] = left;
-        best.values["right_wheel_diameter"] = right;
-        best.values["track_width"] = track;
+        best.values[name_of(BaseQuantity::left_wheel_diameter)] = left;
+        best.values[name_of(BaseQuantity::right_wheel_diameter)] = right;
+        best.values[name_of(BaseQuantity::track_width)] = track;
       }
   return best;
 }

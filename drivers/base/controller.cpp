@@ -3,14 +3,13 @@
 #include "drivers/base/cia402/axis_pair.hpp"
 #include "drivers/base/cia402/dual_axis.hpp"
 #include "drivers/base/speed/speed_base.hpp"
+#include "proto/base_quantities.hpp"
 
 namespace odomcalib::drivers {
 
 std::vector<Capability> host_capabilities() {
-  std::vector<Capability> all(3);
-  all[0].quantity = "left_wheel_diameter";
-  all[1].quantity = "right_wheel_diameter";
-  all[2].quantity = "track_width";
+  std::vector<Capability> all(kDriveLengths.size());
+  for (std::size_t k = 0; k < all.size(); ++k) all[k].quantity = name_of(kDriveLengths[k]);
   return all;
 }
 

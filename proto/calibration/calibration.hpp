@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "proto/base_quantities.hpp"
 #include "proto/discarded.hpp"
 #include "proto/measurements.hpp"
 #include "proto/middleware.hpp"
@@ -117,6 +118,9 @@ struct Calibration {
     for (const auto& [key, quantity] : parameters)
       if (key == name) return quantity.value;
     return std::nullopt;
+  }
+  [[nodiscard]] std::optional<double> parameter(BaseQuantity quantity) const {
+    return parameter(std::string(name_of(quantity)));
   }
 };
 

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 
+#include "proto/base_quantities.hpp"
 #include "proto/calibration/report_data.hpp"
 #include "proto/wire/messages.hpp"
 
@@ -14,8 +15,6 @@ using nlohmann::ordered_json;
 
 constexpr const char* kWithoutLcm =
     "scan and progress are asked for; calibrated odometry and results of a solve are missing";
-
-constexpr std::array kLidarPose = {"lidar_x", "lidar_y", "lidar_yaw"};
 
 // The daemon's answers are checked member by member: what is missing is empty, what is of another type too.
 std::string text_in(const ordered_json& object, const char* member) {
@@ -118,12 +117,13 @@ std::optional<double> expected_deviation(const std::string& name, const ordered_
   const bool drove = recorded.straight_m > 0.0, turned = recorded.turned_rad > 0.0;
   const double length = 2.0 * settings::kPairLength_m * std::sqrt(recorded.straight) / recorded.straight_m;
   const double turn = 2.0 * settings::kPairHeading_rad * std::sqrt(recorded.turns) / recorded.turned_rad;
-  const bool is_diameter = name == "left_wheel_diameter" || name == "right_wheel_diameter";
-  if (is_diameter && drove && value.is_number()) return value.get<double>() * length;
-  if (name == "track_width" && drove && turned && value.is_number())
+  const auto quantity = base_quantity_from(name);
+  if (!quantity) return std::nullopt;
+  if (is_wheel_diameter(*quantity) && drove && value.is_number()) return value.get<double>() * length;
+  if (quantity == BaseQuantity::track_width && drove && turned && value.is_number())
     return value.get<double>() * std::hypot(length, turn);
-  if (name == "lidar_yaw" && drove) return length;
-  if ((name == "lidar_x" || name == "lidar_y") && turned)
+  if (quantity == BaseQuantity::lidar_yaw && drove) return length;
+  if ((quantity == BaseQuantity::lidar_x || quantity == BaseQuantity::lidar_y) && turned)
     return 2.0 * settings::kPairLength_m * std::sqrt(recorded.turns) / recorded.turned_rad;
   return std::nullopt;
 }
@@ -273,8 +273,8 @@ std::string LiveState::why_no_telemetry() const {
 
 Pose LiveState::lidar_pose() const {
   if (!result_) return nominal_lidar_;
-  const auto x = result_->parameter("lidar_x"), y = result_->parameter("lidar_y"),
-             yaw = result_->parameter("lidar_yaw");
+  const auto x = result_->parameter(BaseQuantity::lidar_x), y = result_->parameter(BaseQuantity::lidar_y),
+             yaw = result_->parameter(BaseQuantity::lidar_yaw);
   if (!x || !y || !yaw || !is_finite({*x, *y, *yaw})) return nominal_lidar_;
   return {*x, *y, *yaw};
 }
@@ -303,8 +303,10 @@ ordered_json LiveState::all_rows() const {
     rows.push_back(row);
   }
   const std::array<double, 3> nominal = {nominal_lidar_.x, nominal_lidar_.y, nominal_lidar_.yaw};
-  for (std::size_t k = 0; connected_ && k < nominal.size(); ++k)
-    row_in(rows, kLidarPose.at(k), k == 2 ? "rad" : "m")["value"] = nominal.at(k);
+  for (std::size_t k = 0; connected_ && k < nominal.size(); ++k) {
+    const BaseQuantityRow& row = row_of(kLidarPoseQuantities.at(k));
+    row_in(rows, row.name, row.unit)["value"] = nominal.at(k);
+  }
   if (!result_) return rows;
   const auto add = [&rows](const std::string& name, const Quantity& quantity) {
     ordered_json& row = row_in(rows, name, quantity.unit);

@@ -7,6 +7,7 @@
 #include "daemon/service/tasks/write_task.hpp"
 #include "daemon/service/write_gate.hpp"
 #include "daemon/writeback/calibration_in_force.hpp"
+#include "proto/base_quantities.hpp"
 #include "proto/file_bytes.hpp"
 
 namespace odomcalib {
@@ -134,8 +135,8 @@ Result<Wish> wish_of(Calibration calibration, const RobotParts& parts, bool repl
   if (auto wrong = absurd(calibration, nominal_lengths(parts.drive, parts.config))) return *wrong;
   Wish wish;
   if (robot.empty()) wish.asks.push_back(whose_robot(calibration));
-  for (const auto* name : {"left_wheel_diameter", "right_wheel_diameter", "track_width"})
-    if (const auto value = calibration.parameter(name)) wish.values[name] = *value;
+  for (const BaseQuantity length : kDriveLengths)
+    if (const auto value = calibration.parameter(length)) wish.values[name_of(length)] = *value;
   wish.calibration = text_in_force(std::move(calibration));
   wish.origin.calibration_sha256 = sha256_hex(*wish.calibration);
   return wish;

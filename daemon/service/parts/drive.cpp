@@ -6,9 +6,9 @@
 #include <array>
 #include <cmath>
 
-#include <tuple>
 #include "daemon/service/settings.hpp"
 #include "daemon/writeback/transaction.hpp"
+#include "proto/base_quantities.hpp"
 
 namespace odomcalib {
 namespace {
@@ -66,11 +66,9 @@ RobotDescription Drive::nominal() const {
 
 RobotDescription Drive::robot() const {
   RobotDescription all = nominal();
-  for (const auto& parameter : in_force) {
-    if (parameter.quantity == "left_wheel_diameter") all.left_wheel_diameter = parameter.value;
-    if (parameter.quantity == "right_wheel_diameter") all.right_wheel_diameter = parameter.value;
-    if (parameter.quantity == "track_width") all.track_width = parameter.value;
-  }
+  for (const auto& parameter : in_force)
+    if (const auto length = base_quantity_from(parameter.quantity); length && is_drive_length(*length))
+      all.*member_of(*length) = parameter.value;
   return all;
 }
 
@@ -150,18 +148,16 @@ std::optional<Error> Drive::geometry_forbidden() const {
   if (!(all.left_wheel_diameter > 0.0 && all.right_wheel_diameter > 0.0 && all.track_width > 0.0))
     return write_forbidden(ErrorCode::missing_units, "wheel diameters or track width are not known",
                            "state robot.wheel_diameter and robot.track_width in the configuration");
-  const std::array<std::tuple<const char*, double, double>, 3> values{
-      {{"left_wheel_diameter", all.left_wheel_diameter, expected.left_wheel_diameter},
-       {"right_wheel_diameter", all.right_wheel_diameter, expected.right_wheel_diameter},
-       {"track_width", all.track_width, expected.track_width}}};
-  for (const auto& [name, value, wanted] : values)
+  for (const BaseQuantity length : kDriveLengths) {
+    const double value = all.*member_of(length), wanted = expected.*member_of(length);
     if (wanted > 0.0 && std::abs(value / wanted - 1.0) > service::settings::kPlausibleLength)
       return write_forbidden(
           ErrorCode::refused,
-          fmt::format("the controller holds {} = {:.4f} m, the configuration says {:.4f} m", name, value,
-                      wanted),
+          fmt::format("the controller holds {} = {:.4f} m, the configuration says {:.4f} m", name_of(length),
+                      value, wanted),
           "measure the robot; correct robot.* in the configuration or the profile, or the "
           "controller's value");
+  }
   return std::nullopt;
 }
 

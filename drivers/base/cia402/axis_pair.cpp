@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "drivers/base/motion/settings.hpp"
+#include "proto/base_quantities.hpp"
 
 namespace odomcalib::drivers {
 namespace {
@@ -185,8 +186,8 @@ Result<void> AxisPair::start_write_parameters(const std::vector<ParameterValue>&
   Job job(ParameterJobResult::Kind::write);
   job.step = Job::Step::before;
   for (const ParameterValue& value : values) {
-    const bool left = value.quantity == "left_wheel_diameter";
-    if (!left && value.quantity != "right_wheel_diameter")
+    const bool left = is_name_of(value.quantity, BaseQuantity::left_wheel_diameter);
+    if (!left && !is_name_of(value.quantity, BaseQuantity::right_wheel_diameter))
       return Error{ErrorCode::refused, "does not store \"" + value.quantity + "\"",
                    "controller " + robot_.controller, "keep it on the host"};
     job.values[left ? 0 : 1].push_back(value);

@@ -3,6 +3,7 @@
 #include <numbers>
 
 #include "drivers/base/profile/profile_reader.hpp"
+#include "proto/base_quantities.hpp"
 
 namespace odomcalib::drivers {
 namespace {
@@ -120,8 +121,7 @@ std::string read_quantity(ProfileTable& table, const Profile& profile) {
   if (profile.axes == 1) {
     if (quantity == "wheel_diameter") return profile.side + "_wheel_diameter";
     table.complain("quantity", "\"" + quantity + "\"", "wheel_diameter");
-  } else if (quantity != "left_wheel_diameter" && quantity != "right_wheel_diameter" &&
-             quantity != "track_width") {
+  } else if (!is_drive_length(quantity)) {
     table.complain("quantity", "\"" + quantity + "\"",
                    "left_wheel_diameter, right_wheel_diameter, track_width");
   }
