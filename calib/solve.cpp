@@ -96,7 +96,7 @@ Solution solve_with_pairs(std::span<const Recording> recordings, const SolveOpti
   Solution solution =
       calibrate(std::move(opened).value(), request.value(), options, cleaned.remarks, progress);
   solution.calibration = report::explained(whole.view(), std::move(solution.calibration));
-  if (scale && !solution.calibration.parameters.empty()) store_scale(*scale, solution.calibration);
+  if (scale && !solution.calibration.parameters.empty()) solution.calibration.scale = *scale;
   return solution;
 }
 

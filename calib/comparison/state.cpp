@@ -87,7 +87,7 @@ State state_of(const Calibration& calibration) {
       if (std::isfinite(stated)) state.covariance(i, k) = stated;
     }
   }
-  state.scale = scale_of(calibration);
+  state.scale = calibration.scale;
   return state;
 }
 

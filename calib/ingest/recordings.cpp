@@ -2,7 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <nlohmann/json.hpp>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -67,11 +67,9 @@ Recordings with_even_ticks(std::span<const Recording> given) {
   return std::move(repairs).take(stamps);
 }
 
-std::string to_json(const StampReport& report) {
-  nlohmann::ordered_json body = {
-      {"ticks", report.ticks}, {"scans", report.scans}, {"time_increment", report.sweep}};
-  if (report.clocks > 0.0) body["clocks"] = report.clocks;
-  return body.dump();
+StampTimes entry_of(const StampReport& report) {
+  return {report.ticks, report.scans, report.sweep,
+          report.clocks > 0.0 ? std::optional(report.clocks) : std::nullopt};
 }
 
 std::vector<std::string> remarks_on(const StampReport& report) {

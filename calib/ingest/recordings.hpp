@@ -26,8 +26,8 @@ struct StampReport {
   [[nodiscard]] bool any() const { return ticks > 0.0 || scans > 0.0 || sweep > 0.0 || clocks > 0.0; }
 };
 
-/// {"ticks", "scans", "time_increment"}, and "clocks" where they differ, s
-std::string to_json(const StampReport& report);
+/// As the calibration file has it.
+StampTimes entry_of(const StampReport& report);
 
 /// A sentence for each that is worth a look at the driver.
 std::vector<std::string> remarks_on(const StampReport& report);

@@ -125,7 +125,7 @@ void Drive::list_effects() {
     effects_.push_back(
         left_out(name.empty() ? "(no name)" : name, "this version of the library does not know it"));
   }
-  if (calibration_.extensions.contains("lidar_curves"))
+  if (!calibration_.lidar_curves.empty())
     effects_.push_back(left_out("lidar_curves", "errors of the lidar without a name are reported only"));
 }
 

@@ -84,7 +84,7 @@ std::optional<Refusal> open(const std::string& text, const std::string& where,
                        (calibration.reasons.empty() ? "no reason is stated" : calibration.reasons.front())};
   if (auto problem = unusable(calibration, where)) return problem;
   // Only odometry is kept of it: the points of its pictures are most of the file.
-  calibration.extensions.erase("picture");
+  calibration.picture.reset();
   *odometry = new odomcalib_odometry{Drive(calibration, options.counter_bits)};
   return std::nullopt;
 }
@@ -271,7 +271,8 @@ int odomcalib_odometry_velocity_covariance(const odomcalib_odometry* odometry, d
 int odomcalib_odometry_lidar_pose(const odomcalib_odometry* odometry, double pose[3]) {
   if (odometry == nullptr || pose == nullptr) return ODOMCALIB_INVALID_ARGUMENT;
   return updated(const_cast<odomcalib_odometry*>(odometry), [&](const Drive& drive) {
-    const Calibration& calibration = drive.calibration();
+    using odomcalib::BaseQuantity;
+    const odomcalib::Calibration& calibration = drive.calibration();
     const auto x = calibration.parameter(BaseQuantity::lidar_x),
                y = calibration.parameter(BaseQuantity::lidar_y),
                yaw = calibration.parameter(BaseQuantity::lidar_yaw);

@@ -104,9 +104,7 @@ Eigen::MatrixXd base_covariance(const Calibration& calibration) {
 }
 
 std::vector<terms::FittedSmoothTerm> smooths_of(const Calibration& calibration) {
-  const auto member = calibration.extensions.find(terms::kSmoothTermsMember);
-  return member == calibration.extensions.end() ? std::vector<terms::FittedSmoothTerm>{}
-                                                : terms::smooth_terms_from_json(member->second);
+  return terms::smooth_terms_of(calibration.curves);
 }
 
 }  // namespace

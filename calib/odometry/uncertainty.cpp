@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <nlohmann/json.hpp>
 
 #include "calib/math/vector2.hpp"
 #include "calib/vehicle/step_twist.hpp"
@@ -10,7 +9,6 @@
 namespace odomcalib::calib::odometry {
 namespace {
 
-constexpr std::array kAxes = {"forward", "sideways", "yaw"};
 constexpr std::array kUnitsOfNoise = {"m/sqrt(m)", "m/sqrt(m)", "rad/sqrt(m)"};
 
 /// m, mean of both wheels, whichever way each rolls. Headings may be cut off at half a turn.
@@ -44,26 +42,16 @@ Eigen::Vector3d squares_of(const IncrementNoise& noise) {
 
 }  // namespace
 
-std::string to_json(const IncrementNoise& noise) {
-  nlohmann::ordered_json out;
-  for (std::size_t k = 0; k < kAxes.size(); ++k)
-    out[kAxes.at(k)] = {{"value", noise.at(k)}, {"unit", kUnitsOfNoise.at(k)}};
-  return out.dump();
+ContactNoise entry_of(const IncrementNoise& noise) {
+  return {{noise[0], kUnitsOfNoise[0]}, {noise[1], kUnitsOfNoise[1]}, {noise[2], kUnitsOfNoise[2]}};
 }
 
 std::optional<IncrementNoise> contact_noise_of(const Calibration& calibration) {
-  const auto member = calibration.extensions.find(kContactNoiseMember);
-  if (member == calibration.extensions.end()) return std::nullopt;
-  const auto stated = nlohmann::json::parse(member->second, nullptr, false);
-  IncrementNoise noise{};
-  for (std::size_t k = 0; k < kAxes.size(); ++k) {
-    if (!stated.is_object() || !stated.contains(kAxes.at(k))) return std::nullopt;
-    const auto& axis = stated[kAxes.at(k)];
-    if (!axis.is_object() || !axis.contains("value") || !axis["value"].is_number()) return std::nullopt;
-    noise.at(k) = axis["value"].get<double>();
-    if (!(noise.at(k) >= 0.0) || !std::isfinite(noise.at(k))) return std::nullopt;
-  }
-  return noise;
+  if (!calibration.contact_noise) return std::nullopt;
+  const auto& [forward, sideways, yaw] = *calibration.contact_noise;
+  const IncrementNoise noise = {forward.value, sideways.value, yaw.value};
+  const auto is_noise = [](double value) { return value >= 0.0 && std::isfinite(value); };
+  return std::all_of(noise.begin(), noise.end(), is_noise) ? std::optional(noise) : std::nullopt;
 }
 
 std::array<double, 3> deviation_at_end(std::span<const PoseSample> path, const IncrementNoise& noise,

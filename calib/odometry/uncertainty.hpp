@@ -5,7 +5,6 @@
 #include <array>
 #include <optional>
 #include <span>
-#include <string>
 #include <vector>
 
 #include "calib/odometry/dead_reckoning.hpp"
@@ -18,10 +17,10 @@ namespace odomcalib::calib::odometry {
 /// variances grow with the way that the wheels roll, so that those of a longer one grow with its root.
 using IncrementNoise = std::array<double, 3>;
 
-/// Member "contact_noise" of a calibration file: IncrementNoise that its drives showed of wheels and floor.
-inline constexpr const char* kContactNoiseMember = "contact_noise";
-std::string to_json(const IncrementNoise& noise);
-/// nullopt where the file has none, or none that is finite and no less than zero.
+/// The noise as the calibration file has it.
+ContactNoise entry_of(const IncrementNoise& noise);
+/// Noise of wheels and floor that the drives of a calibration showed; nullopt where the file has none, or
+/// none that is finite and no less than zero.
 std::optional<IncrementNoise> contact_noise_of(const Calibration& calibration);
 
 /// How far dead reckoning may be off after a path, when nothing but chance disturbs the wheels: standard

@@ -1,10 +1,7 @@
 #include "calib/report/findings.hpp"
-#include "calib/report/contact_noise.hpp"
 
 #include <algorithm>
 #include <cmath>
-#include <map>
-#include <nlohmann/json.hpp>
 #include <optional>
 #include <span>
 #include <string>
@@ -13,6 +10,7 @@
 
 #include "calib/classical/missing_motion.hpp"
 #include "calib/estimation/gyro_fit.hpp"
+#include "calib/report/contact_noise.hpp"
 #include "calib/report/found_effects.hpp"
 #include "calib/report/gate.hpp"
 #include "calib/report/left_out.hpp"
@@ -22,33 +20,25 @@
 #include "calib/report/report_data.hpp"
 #include "calib/report/settings.hpp"
 #include "calib/report/verdict_rules.hpp"
+#include "calib/selection/file_entries.hpp"
 #include "calib/selection/lidar_trace.hpp"
-#include "calib/selection/selection_json.hpp"
 #include "calib/validation/held_out.hpp"
 
 namespace odomcalib::calib::report {
 namespace {
 
-/// No gyro was held against anything.
-bool is_silent(const estimation::GyroFit& witness) {
-  return std::none_of(witness.gyros.begin(), witness.gyros.end(), [](const auto& g) { return g.used > 0; });
-}
-
-/// A list with an entry for each recording whose gyro was weighed.
+/// An entry for each recording whose gyro was weighed.
 /// @param recordings one for each of the gyros
-std::string to_json(const estimation::GyroFit& witness, std::span<const Recording> recordings) {
-  auto list = nlohmann::ordered_json::array();
+std::vector<GyroResult> entries_of(const estimation::GyroFit& witness,
+                                   std::span<const Recording> recordings) {
+  std::vector<GyroResult> entries;
   for (std::size_t k = 0; k < witness.gyros.size(); ++k) {
     const estimation::GyroFinding& gyro = witness.gyros[k];
-    if (gyro.used == 0) continue;
-    nlohmann::ordered_json entry = {
-        {"file", recordings[k].name}, {"used", gyro.used},     {"scale", gyro.scale}, {"scale_std", nullptr},
-        {"bias", gyro.bias},          {"offset", gyro.offset}, {"left_out", nullptr}};
-    if (gyro.scale_std >= 0.0) entry["scale_std"] = gyro.scale_std;
-    if (gyro.fault) entry["left_out"] = *gyro.fault;
-    list.push_back(std::move(entry));
+    if (gyro.used > 0)
+      entries.push_back(
+          {recordings[k].name, gyro.used, gyro.scale, gyro.scale_std, gyro.bias, gyro.offset, gyro.fault});
   }
-  return list.dump();
+  return entries;
 }
 
 /// A sentence for each gyro that was left out.
@@ -192,23 +182,18 @@ std::optional<Unexplained> unexplained(const Findings& found, const Outliers& ou
   return failed_validation(found.outcome);
 }
 
-/// Members of the file beyond its contract.
-std::map<std::string, std::string> extensions(const Findings& found, const SmoothTerms& smooths,
-                                              const Outliers& outliers, const estimation::GyroFit& gyros,
-                                              const HeldOutErrors& errors) {
-  std::map<std::string, std::string> members;
-  if (!smooths.empty()) members[terms::kSmoothTermsMember] = smooth_terms_to_json(smooths);
-  if (std::any_of(found.lidar.begin(), found.lidar.end(),
-                  [](const auto& f) { return !f.effect->is_named(); }))
-    members[selection::kLidarSmoothTermsMember] = selection::lidar_smooth_terms_to_json(found.lidar);
-  if (outliers) members["outliers"] = to_json(*outliers);
+/// Fills the members that not every file has.
+void add_evidence(const Findings& found, const SmoothTerms& smooths, const Outliers& outliers,
+                  const estimation::GyroFit& gyros, const HeldOutErrors& errors, Calibration& calibration) {
+  calibration.curves = entries_of(smooths);
+  calibration.lidar_curves = selection::lidar_curves(found.lidar);
+  if (outliers) calibration.outliers = entry_of(*outliers);
   if (const auto noise = contact_noise(found.fit.dataset, found.outcome.model, errors))
-    members[odometry::kContactNoiseMember] = odometry::to_json(*noise);
+    calibration.contact_noise = odometry::entry_of(*noise);
   const ingest::StampReport& stamps = found.fit.dataset.recordings.stamps();
-  if (stamps.any()) members["stamps"] = to_json(stamps);
-  if (!is_silent(gyros)) members["gyros"] = to_json(gyros, found.fit.dataset.recordings.view());
-  if (!found.outcome.considered.empty()) members["considered"] = considered_to_json(found.outcome.considered);
-  return members;
+  if (stamps.any()) calibration.stamps = entry_of(stamps);
+  calibration.gyros = entries_of(gyros, found.fit.dataset.recordings.view());
+  calibration.considered = selection::entries_of(found.outcome.considered);
 }
 
 std::vector<std::string> remarks_in(const Findings& found, const SmoothTerms& smooths,
@@ -347,7 +332,7 @@ Calibration calibrated(const Findings& found) {
   calibration.residual = residual(found, plain, errors);
   calibration.effects = found_effects(found, plain);
   calibration.unexplained = unexplained(found, outliers, !calibration.effects.empty(), data.drive_errors);
-  calibration.extensions = extensions(found, smooths, outliers, gyros, errors);
+  add_evidence(found, smooths, outliers, gyros, errors, calibration);
   store_report_data(data, calibration);
   if (together.homogeneity)
     store_homogeneity(*together.homogeneity, found.fit.dataset.recordings.view(), calibration);

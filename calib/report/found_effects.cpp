@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "calib/selection/selection_json.hpp"
+#include "calib/selection/file_entries.hpp"
 #include "calib/selection/settings.hpp"
 #include "calib/terms/smooth_term.hpp"
 #include "calib/validation/folds.hpp"

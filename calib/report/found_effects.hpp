@@ -7,7 +7,7 @@
 
 #include "calib/report/findings.hpp"
 #include "calib/report/outlier_trace.hpp"
-#include "calib/selection/selection_json.hpp"
+#include "calib/selection/file_entries.hpp"
 
 namespace odomcalib::calib::report {
 

@@ -1,7 +1,7 @@
 #include "calib/report/one_robot.hpp"
 
 #include <cmath>
-#include <nlohmann/json.hpp>
+#include <utility>
 
 #include "calib/math/number_text.hpp"
 #include "calib/report/report.hpp"
@@ -9,8 +9,6 @@
 
 namespace odomcalib::calib::report {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 bool is_length(Eigen::Index parameter) { return parameter < vehicle::kMountX; }
 
@@ -74,34 +72,26 @@ std::optional<Disagreement> recordings_apart(const report::Homogeneity& found,
 void store_homogeneity(const report::Homogeneity& found, std::span<const Recording> recordings,
                        Calibration& calibration) {
   const std::vector<std::string> names = base_quantity_names();
-  Json all = Json::array();
+  calibration.recordings.clear();
   for (std::size_t i = 0; i < recordings.size(); ++i) {
-    Json one = {{"file", recordings[i].name}, {"robot_id", recordings[i].robot.robot_id}};
-    Json parameters = nullptr, deviation = Json::object();
+    RecordingAlone one{recordings[i].name, recordings[i].robot.robot_id, std::nullopt, std::nullopt, {}};
     if (found.own[i]) {
-      parameters = Json::object();
+      auto& parameters = one.parameters.emplace();
       for (Eigen::Index k = 0; k < static_cast<Eigen::Index>(names.size()); ++k) {
         const double variance = found.own[i]->covariance(k, k);
         if (!(variance > 0.0)) continue;
         const std::string& name = names[static_cast<std::size_t>(k)];
-        parameters[name] = {{"value", factor_of(k) * found.own[i]->value(k)},
-                            {"std", factor_of(k) * std::sqrt(variance)}};
-        deviation[name] = found.sigmas(static_cast<Eigen::Index>(i), k);
+        parameters.emplace_back(
+            name, EstimateAlone{factor_of(k) * found.own[i]->value(k), factor_of(k) * std::sqrt(variance)});
+        one.deviation.emplace_back(name, found.sigmas(static_cast<Eigen::Index>(i), k));
       }
     }
-    one["parameters"] = std::move(parameters);
-    one["clock"] = nullptr;
-    one["deviation"] = std::move(deviation);
-    all.push_back(std::move(one));
+    calibration.recordings.push_back(std::move(one));
   }
-  calibration.extensions["recordings"] = all.dump();
-  calibration.extensions["homogeneity"] =
-      Json{{"p_value", found.p_value},
-           {"worst",
-            {{"recording", recordings[found.recording].name},
-             {"parameter", names[static_cast<std::size_t>(found.parameter)]},
-             {"sigmas", found.sigmas(static_cast<Eigen::Index>(found.recording), found.parameter)}}}}
-          .dump();
+  calibration.homogeneity =
+      HomogeneityTest{found.p_value,
+                      {recordings[found.recording].name, names[static_cast<std::size_t>(found.parameter)],
+                       found.sigmas(static_cast<Eigen::Index>(found.recording), found.parameter)}};
 }
 
 }  // namespace odomcalib::calib::report

@@ -4,9 +4,9 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <nlohmann/json.hpp>
 #include <numeric>
 #include <random>
+#include <utility>
 
 #include "calib/estimation/stack.hpp"
 #include "calib/math/number_text.hpp"
@@ -232,18 +232,11 @@ std::string to_text(const OutlierTrace& trace) {
   return text + to_text(trace.cause);
 }
 
-std::string to_json(const OutlierTrace& trace) {
-  nlohmann::ordered_json names = nlohmann::ordered_json::array();
+OutlierReport entry_of(const OutlierTrace& trace) {
+  std::vector<std::string> names;
   for (const vehicle::Covariate covariate : trace.depends_on) names.push_back(to_string(covariate));
-  const nlohmann::ordered_json json = {{"outliers", trace.outliers},
-                                       {"pairs", trace.pairs},
-                                       {"depends_on", names},
-                                       {"p_value", trace.p_value},
-                                       {"placed", trace.cause.placed},
-                                       {"confirmed", trace.cause.confirmed},
-                                       {"farther", trace.cause.farther},
-                                       {"turned_farther", trace.cause.turned_farther}};
-  return json.dump();
+  return {trace.outliers,     trace.pairs,           std::move(names),    trace.p_value,
+          trace.cause.placed, trace.cause.confirmed, trace.cause.farther, trace.cause.turned_farther};
 }
 
 }  // namespace odomcalib::calib::report

@@ -11,6 +11,7 @@
 #include "calib/estimation/joint.hpp"
 #include "calib/report/outlier_cause.hpp"
 #include "calib/vehicle/channel.hpp"
+#include "proto/calibration/members.hpp"
 
 namespace odomcalib::calib::report {
 
@@ -31,7 +32,7 @@ std::optional<OutlierTrace> trace_outliers(std::span<const measurement::FitData>
 
 /// One sentence for a person.
 std::string to_text(const OutlierTrace& trace);
-/// {"outliers", "pairs", "depends_on", "p_value", "placed", "confirmed", "farther", "turned_farther"}
-std::string to_json(const OutlierTrace& trace);
+/// As the calibration file has it.
+OutlierReport entry_of(const OutlierTrace& trace);
 
 }  // namespace odomcalib::calib::report

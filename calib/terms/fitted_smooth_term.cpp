@@ -2,9 +2,9 @@
 
 #include <algorithm>
 #include <array>
-#include <nlohmann/json.hpp>
 #include <optional>
 #include <type_traits>
+#include <utility>
 #include <variant>
 
 namespace odomcalib::calib::terms {
@@ -43,18 +43,9 @@ Shape shape_of(const Basis& basis) {
   return std::visit(as_shape, basis);
 }
 
-Shape shape_from(const nlohmann::json& entry) {
-  Shape shape;
-  shape.period = entry.value("period", shape.period);
-  shape.harmonic = entry.value("harmonic", shape.harmonic);
-  shape.knots = entry.value("knots", shape.knots);
-  shape.degree = entry.value("degree", shape.degree);
-  shape.moment = entry.value("moment", shape.moment);
-  shape.fading = entry.value("fading", shape.fading);
-  shape.wave = entry.value("wave", shape.wave);
-  shape.constant = entry.value("constant", shape.constant);
-  shape.patches = entry.value("patches", shape.patches);
-  return shape;
+Shape shape_from(const SmoothTermEntry& entry) {
+  return {entry.period, entry.harmonic, entry.knots,    entry.degree, entry.moment,
+          entry.fading, entry.wave,     entry.constant, entry.patches};
 }
 
 /// A file may say anything.
@@ -83,62 +74,57 @@ Basis basis_from(const Shape& shape, const Basis& usual) {
   return std::holds_alternative<Polynomials>(usual) ? Polynomials{shape.degree} : usual;
 }
 
-std::optional<FittedSmoothTerm> smooth_from(const nlohmann::json& entry) {
-  if (!entry.is_object()) return std::nullopt;
-  const auto covariate = enum_from(entry.value("variable", ""), vehicle::kLastCovariate);
-  const auto channel = enum_from(entry.value("carrier", ""), vehicle::kLastChannel);
+std::optional<FittedSmoothTerm> smooth_from(const SmoothTermEntry& entry) {
+  const auto covariate = enum_from(entry.variable, vehicle::kLastCovariate);
+  const auto channel = enum_from(entry.carrier, vehicle::kLastChannel);
   if (!covariate || !channel) return std::nullopt;
-  const auto memory = entry.value("memory", vehicle::kUsualMemory);
   const Shape shape = shape_from(entry);
-  if (memory >= memories_of(*covariate) || !is_sound(shape, *covariate)) return std::nullopt;
-  SmoothTerm smooth{{*covariate, *channel}, entry.value("low", 0.0), entry.value("high", 0.0), memory};
-  smooth.with_motion = entry.value("with_motion", false);
+  if (entry.memory >= memories_of(*covariate) || !is_sound(shape, *covariate)) return std::nullopt;
+  SmoothTerm smooth{{*covariate, *channel}, entry.low, entry.high, entry.memory};
+  smooth.with_motion = entry.with_motion;
   smooth.basis = basis_from(shape, smooth.basis);
-  const auto coefficients = entry.value("coefficients", std::vector<double>{});
-  if (!(smooth.high > smooth.low) || coefficients.size() != function_count(smooth)) return std::nullopt;
-  smooth.mean = entry.value("mean", std::vector<double>{});
-  if (!smooth.mean.empty() && smooth.mean.size() != coefficients.size()) return std::nullopt;
-  return FittedSmoothTerm{smooth, coefficients, entry.value("law_of", "")};
+  if (!(smooth.high > smooth.low) || entry.coefficients.size() != function_count(smooth)) return std::nullopt;
+  smooth.mean = entry.mean;
+  if (!smooth.mean.empty() && smooth.mean.size() != entry.coefficients.size()) return std::nullopt;
+  return FittedSmoothTerm{smooth, entry.coefficients, entry.law_of};
 }
+
+// Files of earlier versions do not say what was not to be chosen then.
+static_assert(SmoothTermEntry{}.knots == kKnots && SmoothTermEntry{}.degree == kDegrees &&
+              SmoothTermEntry{}.memory == vehicle::kUsualMemory);
 
 }  // namespace
 
-std::string smooth_terms_to_json(const std::vector<FittedSmoothTerm>& smooths) {
-  nlohmann::ordered_json list = nlohmann::ordered_json::array();
+std::vector<SmoothTermEntry> entries_of(const std::vector<FittedSmoothTerm>& smooths) {
+  std::vector<SmoothTermEntry> entries;
   for (const auto& [smooth, coefficients, named_term] : smooths) {
     const Shape shape = shape_of(smooth.basis);
-    list.push_back({{"variable", to_string(smooth.dependence.covariate)},
-                    {"carrier", to_string(smooth.dependence.channel)},
-                    {"low", smooth.low},
-                    {"high", smooth.high},
-                    {"period", shape.period},
-                    {"mean", smooth.mean},
-                    {"harmonic", shape.harmonic},
-                    {"knots", shape.knots},
-                    {"degree", shape.degree},
-                    {"moment", shape.moment},
-                    {"fading", shape.fading},
-                    {"memory", smooth.memory},
-                    {"wave", shape.wave},
-                    {"constant", shape.constant},
-                    {"patches", shape.patches},
-                    {"with_motion", smooth.with_motion},
-                    {"coefficients", coefficients},
-                    {"law_of", named_term}});
+    entries.push_back({.variable = to_string(smooth.dependence.covariate),
+                       .carrier = to_string(smooth.dependence.channel),
+                       .low = smooth.low,
+                       .high = smooth.high,
+                       .period = shape.period,
+                       .mean = smooth.mean,
+                       .harmonic = shape.harmonic,
+                       .knots = shape.knots,
+                       .degree = shape.degree,
+                       .moment = shape.moment,
+                       .fading = shape.fading,
+                       .memory = smooth.memory,
+                       .wave = shape.wave,
+                       .constant = shape.constant,
+                       .patches = shape.patches,
+                       .with_motion = smooth.with_motion,
+                       .coefficients = coefficients,
+                       .law_of = named_term});
   }
-  return list.dump();
+  return entries;
 }
 
-std::vector<FittedSmoothTerm> smooth_terms_from_json(const std::string& text) {
+std::vector<FittedSmoothTerm> smooth_terms_of(const std::vector<SmoothTermEntry>& entries) {
   std::vector<FittedSmoothTerm> smooths;
-  try {
-    const nlohmann::json list = nlohmann::json::parse(text);
-    if (!list.is_array()) return smooths;
-    for (const auto& entry : list)
-      if (auto smooth = smooth_from(entry)) smooths.push_back(std::move(*smooth));
-  } catch (const nlohmann::json::exception&) {
-    return smooths;  // members of the wrong type: nothing after them is trusted
-  }
+  for (const SmoothTermEntry& entry : entries)
+    if (auto smooth = smooth_from(entry)) smooths.push_back(std::move(*smooth));
   return smooths;
 }
 

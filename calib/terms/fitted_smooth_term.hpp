@@ -1,15 +1,13 @@
-// Smooth terms in the calibration file: member "curves", a list of {variable, carrier, low, high,
-// coefficients, ...}.
+// Smooth terms in the calibration file: member "curves".
 #pragma once
 
 #include <string>
 #include <vector>
 
 #include "calib/terms/smooth_term.hpp"
+#include "proto/calibration/members.hpp"
 
 namespace odomcalib::calib::terms {
-
-inline constexpr const char* kSmoothTermsMember = "curves";
 
 struct FittedSmoothTerm {
   SmoothTerm smooth;
@@ -18,9 +16,9 @@ struct FittedSmoothTerm {
       named_term;  ///< named effect whose function it completes; empty: nothing in the catalogue explains it
 };
 
-std::string smooth_terms_to_json(const std::vector<FittedSmoothTerm>& smooths);
+std::vector<SmoothTermEntry> entries_of(const std::vector<FittedSmoothTerm>& smooths);
 
 /// Entries that are not understood are left out: a newer program's smooth term must not stop odometry.
-std::vector<FittedSmoothTerm> smooth_terms_from_json(const std::string& text);
+std::vector<FittedSmoothTerm> smooth_terms_of(const std::vector<SmoothTermEntry>& entries);
 
 }  // namespace odomcalib::calib::terms

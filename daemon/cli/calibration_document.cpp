@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <nlohmann/json.hpp>
 #include <numbers>
 #include <set>
 #include <string_view>
@@ -168,13 +167,13 @@ Section subject_section(const Calibration& calibration) {
   };
   add("robot", calibration.robot.robot_id);
   add("controller", calibration.robot.controller);
-  add("place", setting_of(calibration, "place"));
+  add("place", settings_of(calibration).place);
   if (const auto& driven = calibration.driven) add("driven", utc_span(driven->begin, driven->end));
   for (const auto& data : calibration.data)
     add("recording", fmt::format("{}, {:.0f} s", data.name, data.duration));
-  if (const std::string version = setting_of(calibration, "version"); !version.empty())
+  if (const std::string version = settings_of(calibration).version; !version.empty())
     add("solved by", "odomcalib " + version);
-  add("note", setting_of(calibration, "note"));
+  add("note", settings_of(calibration).note);
   return section;
 }
 
@@ -235,21 +234,17 @@ Document::Tone tone_of(Verdict verdict) {
 }
 
 std::string metre_of(const Calibration& calibration) {
-  const auto scale = scale_of(calibration);
+  const auto& scale = calibration.scale;
   if (!scale) return "";
   return scale->source == "lidar data sheet" ? "lidar" : "tape";
 }
 
-std::string setting_of(const Calibration& calibration, const char* name) {
-  const auto member = calibration.extensions.find("settings");
-  if (member == calibration.extensions.end()) return "";
-  const auto settings = nlohmann::json::parse(member->second, nullptr, false);
-  if (!settings.is_object() || !settings.contains(name) || !settings[name].is_string()) return "";
-  return settings[name].get<std::string>();
+SolveSettings settings_of(const Calibration& calibration) {
+  return calibration.settings.value_or(SolveSettings{});
 }
 
 Section parameters_section(const Calibration& calibration) {
-  const auto scale = scale_of(calibration);
+  const auto& scale = calibration.scale;
   Section section{"Parameters", {}, {{"", "nominal", "value", "repeatable to", "unit", "change"}, {}}};
   if (scale)
     section.table.head.insert(section.table.head.begin() + 4, "true to (" + metre_of(calibration) + ")");
@@ -328,6 +323,7 @@ Document describe(const Calibration& calibration, const std::vector<Section>& wr
                                    determination_section(calibration),
                                    repeatability_section(calibration, data),
                                    residual_shape_section(data),
+                                   further_figures_section(labelled_figures(calibration)),
                                    data_of(calibration),
                                    settings_section(calibration)};
   sections.insert(sections.end() - 2, written.begin(), written.end());
@@ -354,7 +350,8 @@ std::vector<std::pair<std::string, std::vector<Section>>> folded_sections(
       {"What was not found", {not_found_section(data, true)}},
       {written.empty() ? "" : written.front().title, written},
       {"Data and settings",
-       {subject_section(calibration), data_of(calibration), settings_section(calibration)}},
+       {subject_section(calibration), further_figures_section(labelled_figures(calibration)),
+        data_of(calibration), settings_section(calibration)}},
       {"How to read this page", {reading_section()}}};
   for (auto& [title, sections] : groups)
     std::erase_if(sections, [](const Section& one) { return one.lines.empty() && one.table.rows.empty(); });

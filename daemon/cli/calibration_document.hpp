@@ -30,8 +30,8 @@ std::string headline(Verdict verdict);
 Document::Tone tone_of(Verdict verdict);
 std::string next_step(const Calibration& calibration);
 
-/// Text of the member "settings", such as "place", "note" or "version"; empty where it is not stated.
-std::string setting_of(const Calibration& calibration, const char* name);
+/// Settings of the run; empty where the file does not state them.
+SolveSettings settings_of(const Calibration& calibration);
 /// The metre "true to" stands on: "tape" or "lidar", by its data sheet; empty where nothing is known of it.
 std::string metre_of(const Calibration& calibration);
 

@@ -6,7 +6,6 @@
 #include <charconv>
 #include <cmath>
 #include <filesystem>
-#include <nlohmann/json.hpp>
 #include <set>
 #include <utility>
 
@@ -154,12 +153,7 @@ Result<double> error_of_metre_from_text(const std::string& text) {
 
 std::string file_name(const std::string& path) { return std::filesystem::path(path).filename().string(); }
 
-std::optional<double> odometer_of(const Calibration& calibration) {
-  const auto member = calibration.extensions.find("odometer");
-  if (member == calibration.extensions.end()) return std::nullopt;
-  const auto value = nlohmann::json::parse(member->second, nullptr, false);
-  return value.is_number() ? std::optional(value.get<double>()) : std::nullopt;
-}
+std::optional<double> odometer_of(const Calibration& calibration) { return calibration.odometer; }
 
 Result<std::vector<ComparedRobot>> compare(std::vector<ComparedFile> files,
                                            const ComparisonOptions& options) {

@@ -84,7 +84,7 @@ std::string metre_text(const ComparedRobot& robot, const Difference& difference)
     return "no file states how long the metre of its reference is: it is taken to be the same in all";
   if (difference.metre == Metre::apart)
     return "the metres of the references are not the same: the error of each is in the deviations";
-  const auto scale = scale_of(robot.usable_file(0).calibration);
+  const auto& scale = robot.usable_file(0).calibration.scale;
   return fmt::format(
       "the metre of the reference ({}, +-{:.3g} %) is the same in all: its error cancels in "
       "differences, if the lidar is still the same",

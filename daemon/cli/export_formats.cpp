@@ -34,7 +34,7 @@ void line(std::string& out, const Fields&... fields) {
 
 std::string parameters_csv(const Calibration& calibration) {
   std::string out = "name,value,std,unit,std_absolute\n";
-  const auto scale = scale_of(calibration);
+  const auto& scale = calibration.scale;
   for (const auto& [name, q] : calibration.parameters)
     line(out, field(name), field(q.value), deviation(q.std), field(q.unit),
          scale ? deviation(absolute_deviation(q, *scale)) : "");

@@ -10,8 +10,8 @@
 #include "daemon/cli/output.hpp"
 #include "daemon/cli/settings.hpp"
 #include "proto/angles.hpp"
+#include "proto/calibration/discarded_json.hpp"
 #include "proto/calibration/utc.hpp"
-#include "proto/discarded_json.hpp"
 #include "proto/recording/left_out.hpp"
 
 namespace odomcalib::cli {

@@ -158,12 +158,6 @@ double in_force(const RobotDescription& robot, const std::string& name) {
   return length ? nominal_value(robot, *length).value_or(0.0) : 0.0;
 }
 
-ordered_json quantity(const Quantity& q) {
-  return {{"value", q.value},
-          {"std", q.std < 0.0 ? ordered_json(nullptr) : ordered_json(q.std)},
-          {"unit", q.unit}};
-}
-
 std::string assignments(const Proposal& proposal) {
   std::string text;
   for (const auto& [name, q] : proposal.parameters) text += fmt::format(" {}={:.7f}", name, q.value);
@@ -291,29 +285,23 @@ Result<Proposal> square_proposal(const DrivenMoves& driven, double side) {
   return proposal;
 }
 
-ordered_json to_json(const Proposal& proposal) {
-  ordered_json body = {{"method", proposal.method},
-                       {"measured_by", proposal.measured_by},
-                       {"used", proposal.used},
-                       {"left_out", proposal.left_out},
-                       {"settled", proposal.settled},
-                       {"parameters", ordered_json::object()},
-                       {"errors", ordered_json::object()},
-                       {"remarks", proposal.remarks}};
-  for (const auto& [name, q] : proposal.parameters) {
-    body["parameters"][name] = quantity(q);
-    body["parameters"][name]["in_force"] = in_force(proposal.robot, name);
-  }
+ProposalEntry entry_of(const Proposal& proposal) {
+  ProposalEntry entry;
+  entry.method = proposal.method;
+  entry.measured_by = proposal.measured_by;
+  entry.used = proposal.used;
+  entry.left_out = proposal.left_out;
+  entry.settled = proposal.settled;
+  for (const auto& [name, q] : proposal.parameters)
+    entry.parameters.emplace_back(name,
+                                  ProposedValue{q.value, q.std, q.unit, in_force(proposal.robot, name)});
   for (std::size_t k = 0; k < proposal.errors.size(); ++k) {
     const auto& [name, q] = proposal.errors[k];
-    ordered_json entry = {{"value", q.value}, {"std", nullptr}, {"spread", nullptr}};
-    if (q.std >= 0.0) {
-      entry["std"] = q.std;
-      entry["spread"] = proposal.spreads[k];
-    }
-    body["errors"][name] = entry;
+    const double spread = q.std >= 0.0 ? proposal.spreads[k] : -1.0;
+    entry.errors.emplace_back(name, MoveError{q.value, q.std, spread});
   }
-  return body;
+  entry.remarks = proposal.remarks;
+  return entry;
 }
 
 std::string next_command(const Proposal& proposal) {
@@ -357,7 +345,7 @@ Calibration calibration_of(const Proposal& proposal, const DrivenMoves& driven) 
     use.name = recording.substr(recording.find_last_of('/') + 1);
     calibration.data.push_back(use);
   }
-  calibration.extensions["proposal"] = to_json(proposal).dump();
+  calibration.proposal = entry_of(proposal);
   return calibration;
 }
 

@@ -42,7 +42,8 @@ Result<Proposal> spin_proposal(const DrivenMoves& driven, const std::vector<doub
 /// @param side m
 Result<Proposal> square_proposal(const DrivenMoves& driven, double side);
 
-nlohmann::ordered_json to_json(const Proposal& proposal);
+/// As the calibration file has it.
+ProposalEntry entry_of(const Proposal& proposal);
 std::vector<std::string> to_lines(const Proposal& proposal);
 /// Command that puts the proposal into force.
 std::string next_command(const Proposal& proposal);

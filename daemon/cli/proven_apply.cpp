@@ -27,6 +27,10 @@ Error unseen_drive() {
           "drive where it sees walls on all sides, not along a corridor"};
 }
 
+DrivenErrorsEntry entry_of(const DriveErrors& errors) {
+  return {errors.metre_length, errors.metre_heading, errors.turn};
+}
+
 std::string name_of(ProvenApply::End end) {
   constexpr std::array kNames = {"stored", "not_stored", "taken_back", "in_doubt"};
   return kNames.at(static_cast<std::size_t>(end));
@@ -130,11 +134,12 @@ ProvenApply apply_and_prove(const RunMethod& run, const RunMethod& always, const
   return take_back(always, std::move(applied), after ? not_better(*what) : not_proven(after.error()));
 }
 
-ordered_json to_json(const ProvenApply& applied) {
-  ordered_json body = {{"outcome", name_of(applied.end)}, {"before", json_of<ordered_json>(applied.before)}};
-  body["after"] = json_of<ordered_json>(applied.after);
-  body["error"] = applied.error ? to_json(*applied.error) : ordered_json();
-  return body;
+ProofEntry entry_of(const ProvenApply& applied) {
+  ProofEntry entry{name_of(applied.end), entry_of(applied.before), std::nullopt, std::nullopt};
+  if (applied.after) entry.after = entry_of(*applied.after);
+  if (const auto& error = applied.error)
+    entry.error = {code_name(error->code), error->what, error->where, error->remedy};
+  return entry;
 }
 
 Document describe(const ProvenApply& applied) {

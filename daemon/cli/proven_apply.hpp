@@ -48,9 +48,8 @@ struct ProvenApply {
 ProvenApply apply_and_prove(const RunMethod& run, const RunMethod& always, const Calibration& calibration,
                             const DriveErrors& before);
 
-/// {"outcome", "before", "after", "error"}; errors as {"straight_metre_length" m, "straight_metre_heading"
-/// rad, "full_turn_heading" rad}.
-nlohmann::ordered_json to_json(const ProvenApply& applied);
+/// As the calibration file has it.
+ProofEntry entry_of(const ProvenApply& applied);
 Document describe(const ProvenApply& applied);
 
 }  // namespace odomcalib::cli

@@ -129,7 +129,7 @@ std::string rest_of(const Calibration& calibration, const std::vector<Section>& 
 std::string subject_line(const Calibration& calibration) {
   std::vector<std::string> parts;
   if (!calibration.robot.robot_id.empty()) parts.push_back(calibration.robot.robot_id);
-  if (const std::string place = setting_of(calibration, "place"); !place.empty()) parts.push_back(place);
+  if (const std::string place = settings_of(calibration).place; !place.empty()) parts.push_back(place);
   if (const auto& driven = calibration.driven)
     parts.push_back("driven " + utc_span(driven->begin, driven->end));
   for (const DataUse& data : calibration.data)

@@ -218,15 +218,28 @@ Section residual_shape_section(const ReportData& data) {
   return section;
 }
 
+Section further_figures_section(const std::vector<LabelledFigure>& figures) {
+  Section section{"Further figures", {}, {}};
+  for (const LabelledFigure& figure : figures) {
+    const Display show = display_of(figure.unit);
+    section.table.rows.push_back({figure.label, significant(figure.value * show.factor), show.unit});
+  }
+  if (!section.table.rows.empty()) section.table.head = {"", "value", "unit"};
+  return section;
+}
+
 Section settings_section(const Calibration& calibration) {
   Section section{"Settings and notes", {}, {}};
-  const auto member = calibration.extensions.find("settings");
-  if (member == calibration.extensions.end()) return section;
-  const auto settings = nlohmann::ordered_json::parse(member->second, nullptr, false);
-  if (!settings.is_object()) return section;
-  for (const auto& [name, value] : settings.items())
+  if (!calibration.settings) return section;
+  const auto add = [&section](const std::string& name, const nlohmann::ordered_json& value) {
     section.lines.push_back(readable(name) + ": " +
                             (value.is_string() ? value.get<std::string>() : value.dump()));
+  };
+  const nlohmann::ordered_json settings = to_json(*calibration.settings);
+  for (const auto& [name, value] : settings.items()) add(name, value);
+  if (const auto newer = calibration.unknown.find("settings"); newer != calibration.unknown.end())
+    for (const auto& [name, text] : newer->second)
+      add(name, nlohmann::ordered_json::parse(text, nullptr, false));
   return section;
 }
 

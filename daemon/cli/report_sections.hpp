@@ -3,6 +3,7 @@
 
 #include "daemon/cli/document.hpp"
 #include "proto/calibration/calibration.hpp"
+#include "proto/calibration/figures.hpp"
 #include "proto/calibration/report_data.hpp"
 
 namespace odomcalib::cli {
@@ -22,6 +23,8 @@ Section path_section(const ReportData& data);
 Section determination_section(const Calibration& calibration);
 Section repeatability_section(const Calibration& calibration, const ReportData& data);
 Section residual_shape_section(const ReportData& data);
+/// Numbers of the file that need no words but their label.
+Section further_figures_section(const std::vector<LabelledFigure>& figures);
 /// Notes, settings, versions: member "settings".
 Section settings_section(const Calibration& calibration);
 Section reading_section();

@@ -74,7 +74,7 @@ std::string unnamed_line(const Calibration& calibration) {
 
 /// The metre that all lengths stand on.
 std::string metre_line(const Calibration& calibration) {
-  const auto scale = scale_of(calibration);
+  const auto& scale = calibration.scale;
   if (!scale) return "All lengths stand on the metre of the reference, of which nothing is known.";
   return fmt::format(
       "All lengths stand on the metre of the reference: {:.6g} m by {}, known to +-{:.3g} % (two "
@@ -91,15 +91,15 @@ Section filed_section(const Calibration& calibration, const std::string& file, c
   const auto& driven = calibration.driven;
   add("robot", calibration.robot.robot_id);
   add("controller", calibration.robot.controller);
-  add("place", setting_of(calibration, "place"));
+  add("place", settings_of(calibration).place);
   add("driven", driven ? utc_text(driven->begin) + " to " + utc_text(driven->end) : "");
   for (const DataUse& data : calibration.data)
     add("recording", fmt::format("{}, {:.0f} s; SHA-256 {}", data.name, data.duration, data.sha256));
   add("calibration file", file + "; SHA-256 " + sha256);
-  const std::string version = setting_of(calibration, "version");
+  const std::string version = settings_of(calibration).version;
   add("solved by", version.empty() ? "" : "odomcalib " + version);
   add("certificate by", std::string("odomcalib ") + kVersion);
-  if (const std::string note = setting_of(calibration, "note"); !note.empty()) add("note", note);
+  if (const std::string note = settings_of(calibration).note; !note.empty()) add("note", note);
   return section;
 }
 

@@ -10,7 +10,7 @@
 #include "daemon/cli/outputs.hpp"
 #include "daemon/cli/recordings.hpp"
 #include "daemon/cli/verbs.hpp"
-#include "proto/discarded_json.hpp"
+#include "proto/calibration/discarded_json.hpp"
 #include "proto/file_bytes.hpp"
 #include "proto/recording/left_out.hpp"
 

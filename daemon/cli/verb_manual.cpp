@@ -172,7 +172,7 @@ void print_outcome(const Session& session, const Outcome& outcome) {
   if (session.json != JsonMode::off) {
     ordered_json body = {{"moves", driven.moves}, {"robot", driven.robot}};
     if (!driven.rounds.empty()) body["rounds"] = driven.rounds;
-    body["proposal"] = proposal ? to_json(*proposal) : ordered_json(nullptr);
+    body["proposal"] = proposal ? to_json(entry_of(*proposal)) : ordered_json(nullptr);
     if (!driven.recordings.empty()) body["recording"] = driven.recordings.back();
     body["recordings"] = driven.recordings;
     return print_document("moves", body, session.json);

@@ -135,7 +135,7 @@ Result<ProvenApply> prove(const Session& session, Consent consent, const Calibra
 
 void print_calibration(const Session& session, Calibration calibration,
                        const std::optional<ProvenApply>& applied) {
-  if (applied) calibration.extensions["proof"] = to_json(*applied).dump();
+  if (applied) calibration.proof = entry_of(*applied);
   if (session.json != JsonMode::off) return print_json(to_json(calibration), session.json);
   if (applied) print_text(describe(*applied), session.legend);
 }

@@ -21,7 +21,7 @@
 #include "daemon/cli/verbs.hpp"
 #include "proto/base_quantities.hpp"
 #include "proto/calibration/calibration.hpp"
-#include "proto/discarded_json.hpp"
+#include "proto/calibration/discarded_json.hpp"
 #include "proto/file_bytes.hpp"
 #include "proto/recording/left_out.hpp"
 

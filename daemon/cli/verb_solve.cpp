@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <iostream>
 #include <memory>
-#include <nlohmann/json.hpp>
 #include <set>
 
 #include "calib/solve.hpp"
@@ -49,16 +48,18 @@ Result<void> write_results(const SolveArguments& options, const calib::Solution&
 }
 
 // Settings that a reader of the file must know to repeat the run.
-std::string settings_of(const SolveArguments& options) {
-  nlohmann::ordered_json settings = {{"version", kVersion}, {"effects", options.effects}};
-  if (!options.scale.empty()) settings["scale"] = options.scale;
-  if (!options.sensor.empty()) settings["sensor"] = options.sensor;
+SolveSettings settings_of(const SolveArguments& options) {
+  SolveSettings settings;
+  settings.version = kVersion;
+  settings.effects = options.effects;
+  settings.scale = options.scale;
+  settings.sensor = options.sensor;
   const calib::classical::ClosedFormOptions usual;
-  if (options.cuts.rounds != usual.rounds) settings["rounds"] = options.cuts.rounds;
-  if (options.cuts.drop_fraction != usual.drop_fraction) settings["cut"] = options.cuts.drop_fraction;
-  if (!options.place.empty()) settings["place"] = options.place;
-  if (!options.note.empty()) settings["note"] = options.note;
-  return settings.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
+  if (options.cuts.rounds != usual.rounds) settings.rounds = options.cuts.rounds;
+  if (options.cuts.drop_fraction != usual.drop_fraction) settings.cut = options.cuts.drop_fraction;
+  settings.place = options.place;
+  settings.note = options.note;
+  return settings;
 }
 
 Result<void> check_files(const SolveArguments& options) {
@@ -109,9 +110,8 @@ int solve_recordings(const SolveArguments& options, const Session& session) {
   const auto progress = [&line](const std::string& phase, double fraction) { line.show(phase, fraction); };
   calib::Solution solution = calib::solve_with_pairs(recordings.value(), how, progress);
   Calibration& calibration = solution.calibration;
-  calibration.extensions["settings"] = settings_of(options);
-  if (options.odometer_km)
-    calibration.extensions["odometer"] = nlohmann::json(1000.0 * *options.odometer_km).dump();
+  calibration.settings = settings_of(options);
+  if (options.odometer_km) calibration.odometer = 1000.0 * *options.odometer_km;
   line.clear();
   if (auto written = write_results(options, solution); !written)
     return report_error(written.error(), session.json);

@@ -2,7 +2,6 @@
 
 #include <vector>
 
-#include "proto/calibration/report_data.hpp"
 #include "proto/file_bytes.hpp"
 
 namespace odomcalib {
@@ -13,7 +12,7 @@ constexpr const char* kNone = "none";
 }  // namespace
 
 std::string text_in_force(Calibration calibration) {
-  calibration.extensions.erase(kPictureMember);
+  calibration.picture.reset();
   return to_json(calibration);
 }
 

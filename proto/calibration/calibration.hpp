@@ -11,6 +11,9 @@
 #include <vector>
 
 #include "proto/base_quantities.hpp"
+#include "proto/calibration/members.hpp"
+#include "proto/calibration/report_data.hpp"
+#include "proto/calibration/scale.hpp"
 #include "proto/discarded.hpp"
 #include "proto/measurements.hpp"
 #include "proto/middleware.hpp"
@@ -86,9 +89,24 @@ struct DataUse {
   Middleware middleware = Middleware::none;
 };
 
+/// Members that this program does not know, or not in this shape, as a newer one writes them: JSON text by
+/// the path of their object ("" is the file) and their name. They are kept when a file is read and written
+/// again.
+using UnknownMembers = std::map<std::string, std::map<std::string, std::string>>;
+
 enum class Verdict { accepted, accepted_with_warnings, refused };
 /// As files and JSON have it.
-const char* name_of(Verdict verdict);
+constexpr const char* name_of(Verdict verdict) {
+  switch (verdict) {
+    case Verdict::accepted:
+      return "accepted";
+    case Verdict::accepted_with_warnings:
+      return "accepted_with_warnings";
+    case Verdict::refused:
+      break;
+  }
+  return "refused";
+}
 
 struct Calibration {
   RobotDescription robot;        ///< nominal values used
@@ -110,8 +128,28 @@ struct Calibration {
   /// reasons begin with the name of the file.
   std::vector<Discarded> discarded;
   std::vector<Repair> repairs;
-  /// Additive members that other modules own (JSON text by member name); written verbatim, kept when read.
-  std::map<std::string, std::string> extensions;
+
+  // Members that came after the first version of the format, by their names in the file. What is not set is
+  // not written.
+  std::vector<ConsideredTerm> considered;
+  std::optional<ContactNoise> contact_noise;
+  std::vector<SmoothTermEntry> curves;
+  std::vector<Detectable> detectable;
+  std::optional<std::vector<DriveError>> drive_errors;
+  std::vector<GyroResult> gyros;
+  std::optional<HomogeneityTest> homogeneity;
+  std::vector<LidarCurve> lidar_curves;
+  std::optional<double> odometer;  ///< m, what the robot's own counter of distance said
+  std::optional<OutlierReport> outliers;
+  std::optional<Picture> picture;
+  std::optional<ProofEntry> proof;
+  std::optional<ProposalEntry> proposal;
+  std::vector<RecordingAlone> recordings;
+  std::optional<Scale> scale;
+  std::optional<SolveSettings> settings;
+  std::optional<StampTimes> stamps;
+
+  UnknownMembers unknown;
 
   /// Value of a top-level parameter, or nullopt.
   [[nodiscard]] std::optional<double> parameter(const std::string& name) const {
@@ -131,6 +169,9 @@ std::optional<std::string> non_finite_value(const Calibration& calibration);
 /// JSON text with two-space indent and a fixed member order (same input, same bytes). Non-finite numbers
 /// become null.
 std::string to_json(const Calibration& calibration);
+/// Members of the file that other documents have, too.
+nlohmann::ordered_json to_json(const SolveSettings& settings);
+nlohmann::ordered_json to_json(const ProposalEntry& proposal);
 /// Beginning of the error about a file in a version of the format that this program does not read.
 inline constexpr const char* kOtherVersion =
     "is a calibration file of a version that this program does not read";

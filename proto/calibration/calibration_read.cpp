@@ -1,254 +1,329 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstddef>
 #include <limits>
 #include <nlohmann/json.hpp>
 #include <string_view>
+#include <tuple>
+#include <utility>
 
 #include "proto/calibration/calibration.hpp"
+#include "proto/calibration/field_list.hpp"
 #include "proto/calibration/utc.hpp"
 
 namespace odomcalib {
 namespace {
 
 using Json = nlohmann::ordered_json;
+using fields::About;
+using fields::Form;
+using fields::Presence;
 
 constexpr std::string_view kFormatOfAnyVersion = "odomcalib-calibration/";
 constexpr std::string_view kFormat = "odomcalib-calibration/1";
-constexpr std::array<std::string_view, 16> kCalibrationMembers{
-    "format",     "verdict",    "reasons",           "next_step", "driven",  "robot",
-    "parameters", "covariance", "linear_correction", "methods",   "effects", "unexplained",
-    "residual",   "data",       "discarded",         "repairs"};
 constexpr int kDeepestCalibration = 64;
+constexpr double kNotANumber = std::numeric_limits<double>::quiet_NaN();
 
-/// One JSON value and its path. Wrong types are noted once, in `problem`, and read as empty values.
+std::string dumped(const Json& value) { return value.dump(-1, ' ', false, Json::error_handler_t::replace); }
+
+/// One JSON value and where it stands. Wrong types are noted once, in `problem`, and read as empty values.
 class Node {
  public:
-  Node(const Json& json, std::string path, std::string& problem)
-      : json_(&json), path_(std::move(path)), problem_(&problem) {}
+  /// A member of the file, or the file itself: no name.
+  Node(const Json& json, std::string_view name, std::string& problem)
+      : json_(&json), name_(name), problem_(&problem) {}
 
+  [[nodiscard]] bool is_there() const { return is_there_; }
   [[nodiscard]] bool is_null() const { return json_->is_null(); }
-  [[nodiscard]] Node operator[](const char* name) const {
+  [[nodiscard]] const Json& json() const { return *json_; }
+  [[nodiscard]] std::string path() const {
+    const std::string before = parent_ == nullptr ? "" : parent_->path();
+    if (index_ >= 0) return before + "[" + std::to_string(index_) + "]";
+    return before.empty() ? std::string(name_) : before + "." + std::string(name_);
+  }
+
+  /// It holds as long as this one does.
+  [[nodiscard]] Node operator[](std::string_view name) const {
     static const Json kNull;
-    const std::string path = path_.empty() ? std::string(name) : path_ + "." + name;
-    if (json_->is_null()) return {kNull, path, *problem_};
-    if (!expect(json_->is_object(), "an object")) return {kNull, path, *problem_};
-    const auto found = json_->find(name);
-    return {found == json_->end() ? kNull : *found, path, *problem_};
+    if (is_null() || !expect(json_->is_object(), "an object")) return {*this, kNull, name, -1, false};
+    const auto found = json_->find(std::string(name));
+    if (found == json_->end()) return {*this, kNull, name, -1, false};
+    return {*this, *found, name, -1, true};
   }
 
   /// NaN for null: a value that was not finite when it was written.
   [[nodiscard]] double number() const {
-    if (is_null() || !expect(json_->is_number(), "a number")) return std::numeric_limits<double>::quiet_NaN();
-    return json_->get<double>();
-  }
-  [[nodiscard]] std::optional<double> optional_number() const {
-    return is_null() ? std::nullopt : std::optional(number());
+    return !is_null() && expect(json_->is_number(), "a number") ? json_->get<double>() : kNotANumber;
   }
   [[nodiscard]] std::string text() const {
     return !is_null() && expect(json_->is_string(), "a text") ? json_->get<std::string>() : std::string();
-  }
-  [[nodiscard]] bool flag(bool absent) const {
-    return !is_null() && expect(json_->is_boolean(), "true or false") ? json_->get<bool>() : absent;
-  }
-  [[nodiscard]] std::size_t count() const {
-    return !is_null() && expect(json_->is_number_unsigned(), "a count") ? json_->get<std::size_t>() : 0;
   }
   /// Calls `visit(Node)` for each element; null is an empty list.
   template <typename Visit>
   void each(Visit visit) const {
     if (is_null() || !expect(json_->is_array(), "a list")) return;
-    for (std::size_t i = 0; i < json_->size(); ++i)
-      visit(Node((*json_)[i], path_ + "[" + std::to_string(i) + "]", *problem_));
+    std::ptrdiff_t index = 0;
+    for (const Json& element : *json_) visit(Node(*this, element, "", index++, true));
   }
   /// Calls `visit(name, Node)` for each member; null is an empty object.
   template <typename Visit>
   void each_member(Visit visit) const {
     if (is_null() || !expect(json_->is_object(), "an object")) return;
-    for (const auto& [name, value] : json_->items()) visit(name, Node(value, path_ + "." + name, *problem_));
+    for (const auto& [name, value] : json_->items()) visit(name, Node(*this, value, name, -1, true));
   }
-  bool expect(bool holds, const std::string& what) const {
-    if (!holds && problem_->empty()) *problem_ = "\"" + path_ + "\" is not " + what;
+  bool expect(bool holds, std::string_view what) const {
+    if (!holds && problem_->empty()) *problem_ = "\"" + path() + "\" is not " + std::string(what);
     return holds;
   }
 
  private:
+  Node(const Node& parent, const Json& json, std::string_view name, std::ptrdiff_t index, bool is_there)
+      : json_(&json),
+        parent_(&parent),
+        name_(name),
+        index_(index),
+        problem_(parent.problem_),
+        is_there_(is_there) {}
+
   const Json* json_;
-  std::string path_;
+  const Node* parent_ = nullptr;
+  std::string_view name_;
+  std::ptrdiff_t index_ = -1;  ///< in a list; negative: a member
   std::string* problem_;
+  bool is_there_ = true;
 };
 
-std::vector<double> read_numbers(const Node& node) {
-  std::vector<double> out;
-  node.each([&](const Node& element) { out.push_back(element.number()); });
-  return out;
+template <typename List>
+auto keys_of(const List& list) {
+  return std::apply([](const auto&... field) { return std::array{field.key...}; }, list);
 }
 
-std::array<double, 3> triple(const Node& node) {
-  const auto values = read_numbers(node);
-  std::array<double, 3> out{};
-  if (!node.is_null() && node.expect(values.size() == 3, "three numbers"))
-    std::copy(values.begin(), values.end(), out.begin());
-  return out;
-}
+/// The member that says what kind of file it is.
+struct FormatMark {
+  std::string_view key = "format";
+};
 
-std::vector<std::string> texts(const Node& node) {
-  std::vector<std::string> out;
-  node.each([&](const Node& element) { out.push_back(element.text()); });
-  return out;
-}
+/// Reads values as the list of fields describes them.
+class Reading {
+ public:
+  /// @param strict null and what is absent are no values, but where the list allows them
+  /// @param unknown gets the members that the list does not have
+  Reading(bool strict, UnknownMembers& unknown) : strict_(strict), unknown_(&unknown) {}
 
-QuantityList read_quantities(const Node& node) {
-  QuantityList out;
-  node.each_member([&](const std::string& name, const Node& value) {
-    out.emplace_back(name, Quantity{value["value"].number(), value["std"].optional_number().value_or(-1.0),
-                                    value["unit"].text()});
-  });
-  return out;
-}
+  void read(const Node& node, const About& about, double& out) {
+    if (node.is_null() && about.form == Form::deviation) out = -1.0;
+    if (node.is_null() && (about.form == Form::deviation || about.form == Form::zero)) return;
+    if (about.form == Form::finite) node.expect(node.json().is_number(), "a number");
+    out = node.number();
+    check_range(node, about, out);
+  }
 
-RobotDescription read_robot(const Node& node) {
-  RobotDescription out;
-  out.left_wheel_diameter = node["left_wheel_diameter"].optional_number().value_or(0.0);
-  out.right_wheel_diameter = node["right_wheel_diameter"].optional_number().value_or(0.0);
-  out.track_width = node["track_width"].optional_number().value_or(0.0);
-  out.ticks_per_rev = node["ticks_per_rev"].optional_number().value_or(0.0);
-  if (!node["lidar_pose"].is_null()) out.lidar_pose = triple(node["lidar_pose"]);
-  out.robot_id = node["robot_id"].text();
-  out.controller = node["controller"].text();
-  out.controller_id = node["controller_id"].text();
-  return out;
-}
+  void read(const Node& node, const About&, bool& out) {
+    if (!is_empty(node) && node.expect(node.json().is_boolean(), "true or false"))
+      out = node.json().get<bool>();
+  }
 
-std::optional<Driven> read_driven(const Node& node) {
-  if (node.is_null()) return std::nullopt;
-  const auto begin = utc_from(node["begin"].text()), end = utc_from(node["end"].text());
-  if (!node.expect(begin && end, "two times like 2026-05-04T12:30:00Z")) return std::nullopt;
-  return Driven{*begin, *end};
-}
+  void read(const Node& node, const About& about, std::size_t& out) {
+    out = 0;
+    if (is_empty(node) || !node.expect(node.json().is_number_unsigned(), "a count")) return;
+    out = node.json().get<std::size_t>();
+    check_range(node, about, static_cast<double>(out));
+  }
 
-std::optional<LinearCorrection> read_linear_correction(const Node& node) {
-  if (node.is_null()) return std::nullopt;
-  LinearCorrection out;
-  std::size_t row = 0;
-  node["matrix"].each([&](const Node& values) {
-    if (row < 3) out.matrix.at(row) = triple(values);
-    ++row;
-  });
-  node["matrix"].expect(row == 3, "three rows");
-  out.condition = node["condition"].number();
-  out.rms = triple(node["rms"]);
-  return out;
-}
+  void read(const Node& node, const About& about, int& out) {
+    if (is_empty(node) || !node.expect(node.json().is_number_integer(), "a whole number")) return;
+    const auto whole = node.json().get<double>();
+    if (!node.expect(std::abs(whole) < std::numeric_limits<int>::max(), "a whole number of usual size"))
+      return;
+    out = static_cast<int>(whole);
+    check_range(node, about, out);
+  }
 
-std::vector<MethodResult> read_methods(const Node& node) {
-  std::vector<MethodResult> out;
-  node.each_member([&](const std::string& name, const Node& value) {
-    MethodResult result;
-    result.name = name;
-    if (!value["refused"].is_null()) result.refused = value["refused"].text();
-    result.parameters = read_quantities(value["parameters"]);
-    result.rms = triple(value["rms"]);
-    result.used = value["used"].count();
-    result.discarded = value["discarded"].count();
-    out.push_back(std::move(result));
-  });
-  return out;
-}
+  void read(const Node& node, const About& about, std::string& out) {
+    out.clear();
+    if (about.form != Form::nullable && is_empty(node)) return;
+    out = node.text();
+  }
 
-std::vector<EffectResult> read_effects(const Node& node) {
-  std::vector<EffectResult> out;
-  node.each([&](const Node& value) {
-    EffectResult effect;
-    effect.name = value["name"].text();
-    effect.parameters = read_quantities(value["parameters"]);
-    const auto evidence = value["evidence"];
-    effect.evidence = {evidence["p_value"].number(), evidence["held_out_before"].optional_number(),
-                       evidence["held_out_after"].optional_number()};
-    effect.aliases = texts(value["aliases"]);
-    effect.stored_in = value["stored_in"].text();
-    out.push_back(std::move(effect));
-  });
-  return out;
-}
+  void read(const Node& node, const About&, Verdict& out) {
+    const auto name = node.text();
+    out = Verdict::refused;
+    for (const Verdict known : {Verdict::accepted, Verdict::accepted_with_warnings})
+      if (name == name_of(known)) out = known;
+    if (out == Verdict::refused) node.expect(name == name_of(Verdict::refused), "a known verdict");
+  }
 
-std::optional<Unexplained> read_unexplained(const Node& node) {
-  if (node.is_null()) return std::nullopt;
-  return Unexplained{texts(node["depends_on"]), node["p_value"].number(), node["share"].number()};
-}
+  /// A name that this program does not know is of none that it treats in its own way.
+  void read(const Node& node, const About&, Middleware& out) {
+    out = Middleware::none;
+    if (node.is_null()) return;
+    const auto name = node.text();
+    for (const Middleware known : {Middleware::ros1, Middleware::ros2})
+      if (name == name_of(known)) out = known;
+  }
 
-std::optional<std::array<double, 3>> read_by_axis(const Node& node) {
-  if (node.is_null()) return std::nullopt;
-  return std::array<double, 3>{node["x"].number(), node["y"].number(), node["yaw"].number()};
-}
+  void read(const Node& node, const About&, Driven& out) {
+    const auto begin = utc_from(node["begin"].text()), end = utc_from(node["end"].text());
+    if (node.expect(begin && end, "two times like 2026-05-04T12:30:00Z")) out = {*begin, *end};
+    keep_unknown(node, std::array<std::string_view, 2>{"begin", "end"});
+  }
 
-ResidualReport read_residual(const Node& node) {
-  return {node["held_out"].flag(true), read_by_axis(node["before"]), read_by_axis(node["after"]),
-          read_by_axis(node["noise_floor"])};
-}
+  template <typename T>
+  void read(const Node& node, const About& about, std::optional<T>& out) {
+    out.reset();
+    if (!node.is_null()) read(node, about, out.emplace());
+  }
 
-Verdict verdict(const Node& node) {
-  const auto name = node.text();
-  if (name == "accepted") return Verdict::accepted;
-  if (name == "accepted_with_warnings") return Verdict::accepted_with_warnings;
-  node.expect(name == "refused", "a known verdict");
-  return Verdict::refused;
-}
+  template <typename T, std::size_t kSize>
+  void read(const Node& node, const About& about, std::array<T, kSize>& out) {
+    out = {};
+    if (node.is_null()) return;
+    if (about.form == Form::by_axis) {
+      read_by_axis(node, out);
+      return;
+    }
+    std::size_t size = 0;
+    node.each([&](const Node& element) {
+      if (size < kSize) read(element, about, out.at(size));
+      ++size;
+    });
+    const bool fits = size == kSize || (about.fewest > 0 && size >= about.fewest && size < kSize);
+    if (!fits) node.expect(false, kSize == 3 ? "three numbers" : std::to_string(kSize) + " numbers");
+    if constexpr (std::is_same_v<T, double>)
+      for (std::size_t k = size; k < kSize; ++k) out.at(k) = kNotANumber;
+  }
 
-std::vector<std::pair<std::string, std::size_t>> read_counts(const Node& node) {
-  std::vector<std::pair<std::string, std::size_t>> out;
-  node.each_member(
-      [&](const std::string& name, const Node& value) { out.emplace_back(name, value.count()); });
-  return out;
-}
+  template <typename T, std::size_t kColumns, std::size_t kRows>
+  void read(const Node& node, const About& about, std::array<std::array<T, kColumns>, kRows>& out) {
+    std::size_t row = 0;
+    node.each([&](const Node& values) {
+      if (row < kRows) read(values, about, out.at(row));
+      ++row;
+    });
+    node.expect(row == kRows, "three rows");
+  }
 
-/// Files of earlier versions do not state it: there a choice names the type of the messages, as ROS 2 writes
-/// it.
-Middleware read_middleware(const Node& node, const std::vector<std::string>& choices) {
-  const std::string name = node.text();
-  for (const Middleware one : {Middleware::ros1, Middleware::ros2})
-    if (name == name_of(one)) return one;
-  const bool names_ros2 = std::any_of(choices.begin(), choices.end(), [](const std::string& choice) {
-    return choice.find("/msg/") != std::string::npos;
-  });
-  return names_ros2 ? Middleware::ros2 : Middleware::none;
-}
+  template <typename T>
+  void read(const Node& node, const About& about, std::vector<T>& out) {
+    out.clear();
+    if (strict_) node.expect(!node.is_null(), "a list");
+    node.each([&](const Node& element) { read(element, about, out.emplace_back()); });
+  }
 
-std::vector<DataUse> read_data_uses(const Node& node) {
-  std::vector<DataUse> out;
-  node.each([&](const Node& value) {
-    out.push_back({value["file"].text(), value["sha256"].text(), value["begin"].optional_number(),
-                   value["duration"].optional_number().value_or(0.0), read_counts(value["counts"]),
-                   read_counts(value["discarded"]), texts(value["choices"])});
-    out.back().middleware = read_middleware(value["middleware"], out.back().choices);
-  });
-  return out;
-}
+  template <typename T>
+  void read(const Node& node, const About& about, std::vector<std::pair<std::string, T>>& out) {
+    out.clear();
+    if (strict_) node.expect(!node.is_null(), "an object");
+    node.each_member([&](const std::string& name, const Node& value) {
+      out.emplace_back(name, T{});
+      read(value, about, out.back().second);
+      // The writer computes it from the scale.
+      if (about.form == Form::answer) forget(value.path(), "std_absolute");
+    });
+  }
 
-std::vector<Discarded> read_discarded(const Node& node) {
-  std::vector<Discarded> out;
-  node.each([&](const Node& value) {
-    out.push_back({value["what"].text(), value["reason"].text(), value["count"].count(), value["of"].count(),
-                   value["begin"].optional_number(), value["end"].optional_number()});
-  });
-  return out;
-}
+  void read(const Node& node, const About& about, std::vector<MethodResult>& out) {
+    out.clear();
+    node.each_member([&](const std::string& name, const Node& value) {
+      MethodResult& method = out.emplace_back();
+      method.name = name;
+      if (!value["refused"].is_null()) method.refused = value["refused"].text();
+      read(value, about, method);
+      forget(value.path(), "refused");
+    });
+  }
 
-std::vector<Repair> read_repairs(const Node& node) {
-  std::vector<Repair> out;
-  node.each([&](const Node& value) {
-    out.push_back({value["what"].text(), value["chosen"].text(), value["reason"].text()});
-  });
-  return out;
-}
+  template <fields::IsRow T>
+  void read(const Node& node, const About&, T& out) {
+    std::array<double, fields::Row<T>::kCount> numbers{};
+    numbers.fill(kNotANumber);
+    std::size_t size = 0;
+    node.each([&](const Node& element) {
+      if (size < numbers.size()) numbers.at(size) = element.number();
+      ++size;
+    });
+    out = fields::Row<T>::from(numbers);
+  }
 
-std::map<std::string, std::string> extensions(const Json& json) {
-  std::map<std::string, std::string> out;
-  for (const auto& [name, value] : json.items())
-    if (std::find(kCalibrationMembers.begin(), kCalibrationMembers.end(), name) == kCalibrationMembers.end())
-      out[name] = value.dump(-1, ' ', false, Json::error_handler_t::replace);
-  return out;
-}
+  template <fields::IsObject T>
+  void read(const Node& node, const About&, T& out) {
+    if (strict_ && !node.expect(node.json().is_object(), "an object")) return;
+    read_list(node, fields::Members<T>::list(), out);
+  }
+
+  template <typename List, typename T>
+  void read_list(const Node& node, const List& list, T& out) {
+    std::apply([&](const auto&... field) { (read_field(node, field, out), ...); }, list);
+    keep_unknown(node, keys_of(list));
+  }
+
+  /// Keeps the members of an object that are not among the known ones.
+  template <std::size_t kSize>
+  void keep_unknown(const Node& node, const std::array<std::string_view, kSize>& known) {
+    if (!node.json().is_object()) return;
+    for (const auto& [name, value] : node.json().items())
+      if (std::find(known.begin(), known.end(), name) == known.end())
+        (*unknown_)[node.path()][name] = dumped(value);
+  }
+
+  template <typename T, typename Member>
+  void read_field(const Node& node, const fields::Field<T, Member>& field, T& out) {
+    const Node value = node[field.key];
+    const About& about = field.about;
+    if (!value.is_there() && about.presence != Presence::always && (strict_ || is_optional(about))) return;
+    if (strict_ && !value.expect(value.is_there(), "there")) return;
+    read(value, about, out.*field.member);
+  }
+
+  template <typename T>
+  void read_field(const Node& node, const fields::PairField<T>& field, T& out) {
+    std::array<double, 2> numbers{};
+    const Node value = node[field.key];
+    if (strict_) value.expect(value.is_there(), "there");
+    read(value, field.about, numbers);
+    out.*field.first = numbers[0];
+    out.*field.second = numbers[1];
+  }
+
+  template <typename T, typename... Fields>
+  void read_field(const Node& node, const fields::Group<Fields...>& group, T& out) {
+    read_list(node[group.key], group.list, out);
+  }
+
+ private:
+  /// Where null is no value it is a problem of those who are strict, and an empty one for others.
+  [[nodiscard]] bool is_empty(const Node& node) const {
+    if (strict_ && node.is_null()) node.expect(false, "there");
+    return node.is_null();
+  }
+
+  static bool is_optional(const About& about) {
+    return about.presence == Presence::usual || about.presence == Presence::if_set;
+  }
+
+  template <std::size_t kSize>
+  void read_by_axis(const Node& node, std::array<double, kSize>& out) {
+    constexpr std::array<std::string_view, 3> kAxes = {"x", "y", "yaw"};
+    for (std::size_t k = 0; k < kSize; ++k) out.at(k) = node[kAxes.at(k)].number();
+    keep_unknown(node, kAxes);
+  }
+
+  static void check_range(const Node& node, const About& about, double value) {
+    if (value < about.low) node.expect(false, "at least " + dumped(about.low));
+    if (value > about.high) node.expect(false, "at most " + dumped(about.high));
+  }
+
+  void forget(const std::string& path, const std::string& name) {
+    const auto found = unknown_->find(path);
+    if (found == unknown_->end()) return;
+    found->second.erase(name);
+    if (found->second.empty()) unknown_->erase(found);
+  }
+
+  bool strict_;
+  UnknownMembers* unknown_;
+};
 
 /// Refuses deep nesting while parsing, before it costs memory.
 Json parse_calibration(const std::string& text) {
@@ -261,26 +336,50 @@ Json parse_calibration(const std::string& text) {
   return too_deep || json.is_discarded() ? Json() : json;
 }
 
+template <typename Member>
+bool is_set(const std::optional<Member>& member) {
+  return member.has_value();
+}
+template <typename Item>
+bool is_set(const std::vector<Item>& member) {
+  return !member.empty();
+}
+
+/// An addition that is not understood is no value, and stays in the file as it is.
+template <typename Member>
+void read_addition(const Json& json, const fields::Field<Calibration, Member>& field, Calibration& out) {
+  const auto found = json.find(std::string(field.key));
+  if (found == json.end()) return;
+  std::string problem;
+  UnknownMembers unknown;
+  Member& member = out.*field.member;
+  Reading(true, unknown).read(Node(*found, field.key, problem), field.about, member);
+  if (!problem.empty() || !is_set(member)) {
+    member = {};
+    out.unknown[""][std::string(field.key)] = dumped(*found);
+    return;
+  }
+  out.unknown.merge(unknown);
+}
+
+/// Files of earlier versions do not state it: there a choice names the type of the messages, as ROS 2 writes
+/// it.
+void complete_middleware(DataUse& use) {
+  const bool names_ros2 = std::any_of(use.choices.begin(), use.choices.end(), [](const std::string& choice) {
+    return choice.find("/msg/") != std::string::npos;
+  });
+  if (use.middleware == Middleware::none && names_ros2) use.middleware = Middleware::ros2;
+}
+
 Calibration calibration(const Json& json, std::string& problem) {
   const Node root(json, "", problem);
   Calibration out;
-  out.robot = read_robot(root["robot"]);
-  out.driven = read_driven(root["driven"]);
-  out.parameters = read_quantities(root["parameters"]);
-  out.covariance_order = texts(root["covariance"]["order"]);
-  root["covariance"]["matrix"].each([&](const Node& row) { out.covariance.push_back(read_numbers(row)); });
-  out.linear_correction = read_linear_correction(root["linear_correction"]);
-  out.methods = read_methods(root["methods"]);
-  out.effects = read_effects(root["effects"]);
-  out.unexplained = read_unexplained(root["unexplained"]);
-  out.residual = read_residual(root["residual"]);
-  out.verdict = verdict(root["verdict"]);
-  out.reasons = texts(root["reasons"]);
-  out.next_step = root["next_step"].text();
-  out.data = read_data_uses(root["data"]);
-  out.discarded = read_discarded(root["discarded"]);
-  out.repairs = read_repairs(root["repairs"]);
-  out.extensions = extensions(json);
+  Reading reading(false, out.unknown);
+  const auto file = std::tuple_cat(std::tuple{FormatMark{}}, fields::contract(), fields::additions());
+  std::apply([&](const auto&... field) { (reading.read_field(root, field, out), ...); }, fields::contract());
+  std::apply([&](const auto&... field) { (read_addition(json, field, out), ...); }, fields::additions());
+  reading.keep_unknown(root, keys_of(file));
+  for (DataUse& use : out.data) complete_middleware(use);
   return out;
 }
 
@@ -300,6 +399,14 @@ std::optional<std::string> non_finite(const QuantityList& quantities, const std:
 }
 
 }  // namespace
+
+ErrorGrowth fields::Row<ErrorGrowth>::from(const std::array<double, kCount>& numbers) {
+  constexpr double kMostStretches = 1e9;
+  const auto known = [](double value) { return std::isfinite(value) ? std::optional(value) : std::nullopt; };
+  const double stretches = numbers[1] > 0.0 ? std::min(numbers[1], kMostStretches) : 0.0;
+  return {numbers[0], static_cast<std::size_t>(stretches), known(numbers[2]), known(numbers[3]),
+          known(numbers[4])};
+}
 
 std::optional<std::string> non_finite_value(const Calibration& calibration) {
   if (auto path = non_finite(calibration.parameters, "parameters")) return path;

@@ -10,8 +10,6 @@
 #include <utility>
 #include <vector>
 
-#include "proto/calibration/calibration.hpp"
-
 namespace odomcalib {
 
 /// A figure with its 95 % interval.
@@ -95,25 +93,30 @@ struct ResidualSample {
   std::array<double, 3> sigmas{};  ///< normalised x, y, yaw
 };
 
-struct ReportData {
-  std::vector<DriveError> drive_errors;
+/// Points of the figures: most of a file's bytes, and nothing that odometry needs.
+struct Picture {
   std::vector<ErrorGrowth> growth;
-  std::vector<ResidualTrace> traces;
-  std::vector<Detectable> detectable;
   std::vector<PathTrace> paths;
   std::vector<ScanTrace> scans;
+  std::vector<ResidualTrace> traces;
   std::vector<ResidualAxis> axes;
   std::vector<ResidualSample> series;
   /// Each parameter fitted without one fifth of the data, five times.
   std::vector<std::pair<std::string, std::vector<double>>> left_out;
 };
 
-/// Additive member with the points of the figures: most of a file's bytes, and nothing that odometry needs.
+struct ReportData : Picture {
+  std::vector<DriveError> drive_errors;
+  std::vector<Detectable> detectable;
+};
+
+/// Name of the points in the file, for those who pass a file on without them.
 inline constexpr const char* kPictureMember = "picture";
 
-/// Puts the data into the calibration's additive members, rounded to what a picture can show.
+struct Calibration;
+/// Puts the data into the calibration, rounded to what a picture can show.
 void store_report_data(const ReportData& data, Calibration& calibration);
-/// The report data of a calibration; members that are absent or not understood are empty.
+/// The report data of a calibration; members that are absent are empty.
 ReportData report_data_of(const Calibration& calibration);
 
 }  // namespace odomcalib

@@ -2,15 +2,14 @@
 
 #include <charconv>
 #include <cmath>
-#include <nlohmann/json.hpp>
+#include <optional>
 #include <string_view>
+
+#include "proto/calibration/calibration.hpp"
 
 namespace odomcalib {
 namespace {
 
-using Json = nlohmann::ordered_json;
-
-constexpr const char* kScaleMember = "scale";
 /// Beyond these a number is no scale of a reference but a unit, or a slip of the pen. Chosen.
 constexpr double kLeast = 0.5, kMost = 2.0, kMostDeviation = 0.1;
 
@@ -22,22 +21,6 @@ std::optional<double> whole_number(std::string_view text) {
 }
 
 }  // namespace
-
-void store_scale(const Scale& scale, Calibration& calibration) {
-  calibration.extensions[kScaleMember] =
-      Json{{"value", scale.value}, {"std", scale.std}, {"source", scale.source}}.dump();
-}
-
-std::optional<Scale> scale_of(const Calibration& calibration) {
-  const auto member = calibration.extensions.find(kScaleMember);
-  if (member == calibration.extensions.end()) return std::nullopt;
-  try {
-    const Json json = Json::parse(member->second);
-    return Scale{json.at("value"), json.at("std"), json.at("source")};
-  } catch (const Json::exception&) {
-    return std::nullopt;
-  }
-}
 
 double absolute_deviation(const Quantity& quantity, const Scale& scale) {
   if (quantity.unit != "m" || !(quantity.std >= 0.0)) return quantity.std;

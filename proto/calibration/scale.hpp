@@ -1,11 +1,10 @@
-// The metre of the reference: how many true metres one of its metres is, and how well that is known. Additive
-// member `scale` of the calibration file.
+// The metre of the reference: how many true metres one of its metres is, and how well that is known. Member
+// `scale` of the calibration file.
 #pragma once
 
-#include <optional>
 #include <string>
 
-#include "proto/calibration/calibration.hpp"
+#include "proto/result.hpp"
 
 namespace odomcalib {
 
@@ -15,10 +14,7 @@ struct Scale {
   std::string source;  ///< "lidar data sheet", "tape" or "stated"
 };
 
-void store_scale(const Scale& scale, Calibration& calibration);
-/// nullopt where the member is absent or not understood.
-std::optional<Scale> scale_of(const Calibration& calibration);
-
+struct Quantity;
 /// Standard deviation of a length in true metres: `std`, which is against the reference's own metre, and that
 /// of the metre, in quadrature (JCGM 100:2008, 5.1.2: the two have nothing in common). Of an angle, or of
 /// what is not estimated, `std` itself.

@@ -233,9 +233,9 @@ TEST(Seldom, a_wheel_that_sticks_after_few_stops_is_corrected) {
   ASSERT_EQ(drawn.answer.effects.front().name, "sticky_start");
   const Calibration result = calib::solve({&drawn.run.recording, 1}, {});
   EXPECT_TRUE(test_support::is_told(result, "since_stop")) << test_support::told(result);
-  const auto curves = result.extensions.find("curves");
-  ASSERT_NE(curves, result.extensions.end());
-  EXPECT_NE(curves->second.find("since_stop"), std::string::npos);
+  EXPECT_TRUE(std::any_of(result.curves.begin(), result.curves.end(), [](const SmoothTermEntry& curve) {
+    return curve.variable.find("since_stop") != std::string::npos;
+  }));
 }
 
 // A threshold follows one side of a dip, and makes five per cent of a diameter up beyond the other.

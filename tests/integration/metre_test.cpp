@@ -46,7 +46,7 @@ struct Deviation {
 
 /// Errors of wheels and track against the truth, relative, with the absolute deviations.
 std::vector<Deviation> deviations(const Calibration& found, const sim::Geometry& truth) {
-  const auto scale = scale_of(found);
+  const auto& scale = found.scale;
   EXPECT_TRUE(scale);
   std::vector<Deviation> all;
   for (const auto& [name, quantity] : found.parameters) {

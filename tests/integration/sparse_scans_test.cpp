@@ -58,7 +58,7 @@ std::string text_of(const Calibration& calibration) {
 
 /// Deviation of a length with that of the metre it is measured by.
 double deviation(const Calibration& calibration, const Quantity& length) {
-  const auto scale = scale_of(calibration);
+  const auto& scale = calibration.scale;
   return std::hypot(length.std, scale ? scale->std * length.value : 0.0);
 }
 

@@ -82,12 +82,12 @@ TEST(Difference, does_not_hold_the_metre_that_both_have_in_common) {
   Calibration before = drawn({}, random), after = drawn({}, random);
   const double plain = change(difference(before, after), "track_width").std;
   EXPECT_EQ(difference(before, after).metre, Metre::unstated);
-  store_scale({1.0, 0.01, "lidar data sheet"}, before);
-  store_scale({1.0, 0.01, "lidar data sheet"}, after);
+  before.scale = {1.0, 0.01, "lidar data sheet"};
+  after.scale = {1.0, 0.01, "lidar data sheet"};
   const Difference common = difference(before, after);
   EXPECT_EQ(common.metre, Metre::common);
   EXPECT_EQ(change(common, "track_width").std, plain);
-  store_scale({1.002, 0.001, "tape"}, after);
+  after.scale = {1.002, 0.001, "tape"};
   const Difference apart = difference(before, after);
   EXPECT_EQ(apart.metre, Metre::apart);
   EXPECT_NEAR(change(apart, "track_width").std, std::hypot(plain, 0.4 * std::hypot(0.01, 0.001)), 1e-4);

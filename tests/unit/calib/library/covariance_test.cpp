@@ -65,8 +65,7 @@ Calibration calibration_with(const Eigen::Matrix3d& covariance, double slip) {
     calibration.covariance_order.push_back(calibration.parameters[static_cast<std::size_t>(a)].first);
     calibration.covariance.push_back({covariance(a, 0), covariance(a, 1), covariance(a, 2)});
   }
-  calibration.extensions[odometry::kContactNoiseMember] =
-      odometry::to_json(noise_of(slip, robot.track_width));
+  calibration.contact_noise = odometry::entry_of(noise_of(slip, robot.track_width));
   return calibration;
 }
 

@@ -90,7 +90,7 @@ Calibration with_all_effects() {
     const terms::SmoothTerm smooth{{covariate, vehicle::Channel::both_travel}, -1.0, 1.0};
     smooths.push_back({smooth, std::vector<double>(function_count(smooth), 0.002), ""});
   }
-  calibration.extensions[terms::kSmoothTermsMember] = terms::smooth_terms_to_json(smooths);
+  calibration.curves = terms::entries_of(smooths);
   return calibration;
 }
 
@@ -156,8 +156,7 @@ TEST(Library, poses_are_those_of_the_program_to_the_last_bit_on_the_clock_of_the
   calibration.data[0].begin = -20.0;
   calibration.data[0].duration = 60.0;
   const terms::SmoothTerm steady{{vehicle::Covariate::time, vehicle::Channel::both_travel}, 0.0, 60.0};
-  calibration.extensions[terms::kSmoothTermsMember] =
-      terms::smooth_terms_to_json({{steady, std::vector<double>(function_count(steady), 0.01), ""}});
+  calibration.curves = terms::entries_of({{steady, std::vector<double>(function_count(steady), 0.01), ""}});
   expect_equal(some_drive(), calibration, "curve of time");
 }
 

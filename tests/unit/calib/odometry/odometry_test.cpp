@@ -110,8 +110,7 @@ TEST(Odometry, a_curve_of_time_acts_where_the_time_is_known) {
     const terms::SmoothTerm smooth = period > 0.0 ? on_basis(steady, terms::Cycle{period}) : steady;
     std::vector<double> coefficients(function_count(smooth), 0.0);
     coefficients[0] = 0.01;
-    bent.extensions[terms::kSmoothTermsMember] =
-        terms::smooth_terms_to_json({{smooth, coefficients, named_term}});
+    bent.curves = terms::entries_of({{smooth, coefficients, named_term}});
   };
   set_smooth(0.0, "");
   expect_as_larger(bent, 0.0, "another clock");
@@ -136,7 +135,7 @@ TEST(Odometry, what_a_lidar_did_in_time_is_not_followed) {
     terms::SmoothTerm smooth{{vehicle::Covariate::time, channel}, 0.0, 200.0};
     smooth.basis = terms::ChangePoint{100.0};
     const std::vector<double> coefficients(function_count(smooth), 0.01);
-    lidars.extensions[terms::kSmoothTermsMember] = terms::smooth_terms_to_json({{smooth, coefficients, ""}});
+    lidars.curves = terms::entries_of({{smooth, coefficients, ""}});
     expect_as_larger(lidars, 0.0, to_string(channel).c_str());
     EXPECT_EQ(effect_placements(lidars).front().place, Place::reference) << to_string(channel);
   }

@@ -3,16 +3,15 @@
 
 #include <gtest/gtest.h>
 
-#include <nlohmann/json.hpp>
+#include <map>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "calib/vehicle/drive_model.hpp"
 
 namespace odomcalib::calib::report::one_robot_test {
 namespace {
-
-using Json = nlohmann::json;
 
 std::vector<Recording> named_recordings() {
   std::vector<Recording> all(2);
@@ -76,14 +75,17 @@ TEST(StoredHomogeneity, has_what_each_recording_determines) {
   found.own[1]->covariance(5, 5) = 0.0;
   Calibration calibration;
   store_homogeneity(found, named_recordings(), calibration);
-  const Json all = Json::parse(calibration.extensions.at("recordings"));
-  EXPECT_TRUE(all[0]["parameters"].contains("lidar_yaw"));
-  EXPECT_FALSE(all[1]["parameters"].contains("lidar_yaw")) << "it was fixed";
-  EXPECT_NEAR(all[1]["parameters"]["left_wheel_diameter"]["value"], 0.15, 1e-12);
-  EXPECT_NEAR(all[1]["parameters"]["left_wheel_diameter"]["std"], 2e-4, 1e-12);
-  EXPECT_NEAR(all[1]["parameters"]["track_width"]["std"], 1e-4, 1e-12);
-  EXPECT_EQ(all[1]["deviation"]["left_wheel_diameter"], 10.0);
-  EXPECT_EQ(Json::parse(calibration.extensions.at("homogeneity"))["worst"]["recording"], "b.jsonl");
+  const auto& all = calibration.recordings;
+  ASSERT_EQ(all.size(), found.own.size());
+  const std::map first(all[0].parameters->begin(), all[0].parameters->end());
+  const std::map second(all[1].parameters->begin(), all[1].parameters->end());
+  EXPECT_TRUE(first.contains("lidar_yaw"));
+  EXPECT_FALSE(second.contains("lidar_yaw")) << "it was fixed";
+  EXPECT_NEAR(second.at("left_wheel_diameter").value, 0.15, 1e-12);
+  EXPECT_NEAR(second.at("left_wheel_diameter").std, 2e-4, 1e-12);
+  EXPECT_NEAR(second.at("track_width").std, 1e-4, 1e-12);
+  EXPECT_EQ(all[1].deviation[0], (std::pair<std::string, double>("left_wheel_diameter", 10.0)));
+  EXPECT_EQ(calibration.homogeneity->worst.recording, "b.jsonl");
 }
 
 }  // namespace

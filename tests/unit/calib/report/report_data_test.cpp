@@ -466,8 +466,11 @@ TEST(ReportData, members_of_another_shape_are_as_good_as_absent) {
        {"7", "[1,2]", "{}", "[{\"name\":3}]", "null", "{\"paths\":{\"a\":1}}", "no JSON"}) {
     Calibration calibration;
     store_report_data(example(), calibration);
-    calibration.extensions["picture"] = text;
-    const ReportData data = report_data_of(calibration);
+    calibration.picture.reset();
+    calibration.unknown[""]["picture"] = text;
+    const auto read = calibration_from_json(to_json(calibration), "test");
+    ASSERT_TRUE(read.ok()) << read.error().text();
+    const ReportData data = report_data_of(read.value());
     EXPECT_EQ(data.drive_errors.size(), 1U) << text;
     EXPECT_TRUE(data.paths.empty() && data.traces.empty() && data.axes.empty() && data.series.empty())
         << text;

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "calib/selection/backward_elimination.hpp"
-#include "calib/selection/selection_json.hpp"
+#include "calib/selection/file_entries.hpp"
 #include "calib/terms/candidate_smooths.hpp"
 #include "calib/terms/catalogue.hpp"
 #include "calib/terms/effects/step_effect.hpp"
@@ -109,15 +109,14 @@ TEST(Event, and_what_fades_survive_the_calibration_file_on_time_alone) {
   terms::SmoothTerm fading{{vehicle::Covariate::time, vehicle::Channel::scale}, 0.0, kDuration};
   fading.basis = terms::Decay{40.0};
   const terms::SmoothTerm event = event_at(100.0, vehicle::Channel::both_travel);
-  const auto read = terms::smooth_terms_from_json(
-      terms::smooth_terms_to_json({{event, {0.01, -0.02}, ""}, {fading, {0.01}, ""}}));
+  const auto read =
+      terms::smooth_terms_of(terms::entries_of({{event, {0.01, -0.02}, ""}, {fading, {0.01}, ""}}));
   ASSERT_EQ(read.size(), 2U);
   EXPECT_EQ(read[0].smooth, event);
   EXPECT_EQ(read[1].smooth, fading);
   terms::SmoothTerm nonsense = event;
   nonsense.dependence.covariate = vehicle::Covariate::speed;
-  EXPECT_TRUE(
-      terms::smooth_terms_from_json(terms::smooth_terms_to_json({{nonsense, {0.01, -0.02}, ""}})).empty());
+  EXPECT_TRUE(terms::smooth_terms_of(terms::entries_of({{nonsense, {0.01, -0.02}, ""}})).empty());
 }
 
 TEST(Event, a_load_that_slips_is_found_with_its_moment) {

@@ -184,7 +184,7 @@ TEST(SmoothTerm, about_its_mean_it_has_none_over_the_drive) {
   }
   for (const double value : sum) EXPECT_NEAR(value / way, 0.0, 1e-12);
   const std::vector<terms::FittedSmoothTerm> written = {{smooth, std::vector<double>(sum.size(), 0.01), ""}};
-  const auto read = terms::smooth_terms_from_json(terms::smooth_terms_to_json(written));
+  const auto read = terms::smooth_terms_of(terms::entries_of(written));
   ASSERT_EQ(read.size(), 1U);
   EXPECT_EQ(read[0].smooth.mean, smooth.mean);
 }
@@ -268,11 +268,10 @@ TEST(SmoothTerm, survives_the_calibration_file) {
       other_shapes({{vehicle::Covariate::position, vehicle::Channel::both_travel}, -1.0, 1.0}, {}).front();
   SmoothTerm brake{{vehicle::Covariate::left_acceleration, vehicle::Channel::left_travel}, -0.8, 0.8};
   brake.with_motion = true;
-  const auto read =
-      terms::smooth_terms_from_json(terms::smooth_terms_to_json({{smooth, {0.01, -0.02}, "drift_with_time"},
-                                                                 {tiles, {0.01, 0.0, 0.0, 0.0}, ""},
-                                                                 {rug, std::vector<double>(16, 0.01), ""},
-                                                                 {brake, std::vector<double>(4, 0.01), ""}}));
+  const auto read = terms::smooth_terms_of(terms::entries_of({{smooth, {0.01, -0.02}, "drift_with_time"},
+                                                              {tiles, {0.01, 0.0, 0.0, 0.0}, ""},
+                                                              {rug, std::vector<double>(16, 0.01), ""},
+                                                              {brake, std::vector<double>(4, 0.01), ""}}));
   ASSERT_EQ(read.size(), 4U);
   EXPECT_EQ(read[3].smooth, brake);
   EXPECT_EQ(read[2].smooth, rug);
@@ -280,9 +279,11 @@ TEST(SmoothTerm, survives_the_calibration_file) {
   EXPECT_EQ(read[0].smooth, smooth);
   EXPECT_EQ(read[0].coefficients, (std::vector<double>{0.01, -0.02}));
   EXPECT_EQ(read[0].named_term, "drift_with_time");
-  EXPECT_TRUE(
-      terms::smooth_terms_from_json(R"([{"variable":"mood","carrier":"track","low":0,"high":1}])").empty());
-  EXPECT_TRUE(terms::smooth_terms_from_json("[{").empty());
+  SmoothTermEntry of_a_newer_program;
+  of_a_newer_program.variable = "mood";
+  of_a_newer_program.carrier = "track";
+  of_a_newer_program.high = 1.0;
+  EXPECT_TRUE(terms::smooth_terms_of({of_a_newer_program}).empty());
 }
 
 /// A smooth term of an event in all that it may take, of which these are as likely as the best.

@@ -44,8 +44,8 @@ std::vector<ComparedFile> year(std::mt19937& random) {
     worn.left -= 30e-6 * 5.0 * month;
     worn.right -= 30e-6 * 5.0 * month;
     files.push_back(file("m" + std::to_string(10 + month), "r1", month, random, worn));
-    store_scale({1.0, 0.01, "lidar data sheet"}, files.back().calibration);
-    files.back().calibration.extensions["odometer"] = std::to_string(5000.0 * month);
+    files.back().calibration.scale = {1.0, 0.01, "lidar data sheet"};
+    files.back().calibration.odometer = 5000.0 * month;
   }
   return files;
 }
@@ -118,7 +118,7 @@ TEST(Compare, says_in_words_what_changed_and_that_the_metre_cancels) {
   TrueState moved;
   moved.x += 0.01;
   auto files = std::vector<ComparedFile>{file("a", "r1", 0, random), file("b", "r1", 1, random, moved)};
-  for (ComparedFile& one : files) store_scale({1.0, 0.01, "lidar data sheet"}, one.calibration);
+  for (ComparedFile& one : files) one.calibration.scale = {1.0, 0.01, "lidar data sheet"};
   files[1].calibration.effects = {{"backlash", {}, {}, {}, "host"}};
   const std::string told = text(value_of(compare(files, {})), {});
   EXPECT_THAT(told, HasSubstr("robot r1: something changed (p < 0.0001)"));
@@ -126,7 +126,7 @@ TEST(Compare, says_in_words_what_changed_and_that_the_metre_cancels) {
   EXPECT_THAT(told, HasSubstr("changed: lidar x;"));
   EXPECT_THAT(told, HasSubstr("its error cancels in differences"));
   EXPECT_THAT(told, HasSubstr("effects that came: backlash"));
-  store_scale({1.002, 0.001, "stated"}, files[1].calibration);
+  files[1].calibration.scale = {1.002, 0.001, "stated"};
   EXPECT_THAT(text(value_of(compare(files, {})), {}), HasSubstr("metres of the references are not the same"));
   files[1].calibration.robot.ticks_per_rev = 4096.0;
   EXPECT_THAT(text(value_of(compare(files, {})), {}), HasSubstr("different ticks_per_rev"));

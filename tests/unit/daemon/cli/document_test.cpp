@@ -78,7 +78,7 @@ std::string first_screen_of(const std::string& page) { return page.substr(0, pag
 TEST(Report, first_screen_answers_what_is_asked_first) {
   Calibration calibration = example();
   calibration.robot.robot_id = "carrier-17";
-  calibration.extensions["settings"] = R"({"version":"1","place":"hall 3"})";
+  calibration.settings.emplace().place = "hall 3";
   calibration.driven = Driven{1795947900.0, 1795948191.0};
   const std::string first = first_screen_of(report_page(calibration));
   for (const char* said : {"ACCEPTED", "carrier-17", "hall 3", "driven 2026-11-29, 10:25 to 10:29 UTC",
@@ -137,7 +137,7 @@ TEST(Report, prints_no_interval_of_few_stretches) {
 TEST(Report, has_two_deviations_where_the_metre_is_known) {
   Calibration calibration = example();
   EXPECT_THAT(to_text(describe(calibration)), Not(HasSubstr("true to")));
-  store_scale({1.0, 0.001, "tape"}, calibration);
+  calibration.scale = {1.0, 0.001, "tape"};
   const std::string text = to_text(describe(calibration));
   EXPECT_THAT(text, HasSubstr("true to (tape)"));
   EXPECT_THAT(text, ContainsRegex("left wheel diameter +150.000 +147.000 +0.200 +0.356 +mm"));
@@ -209,8 +209,11 @@ TEST(Sheet, is_drawn_of_a_robot_of_which_nothing_is_known) {
 
 TEST(Certificate, has_what_is_filed) {
   Calibration calibration = with_findings();
-  calibration.extensions["settings"] = R"({"version":"0.9.9","place":"hall 3","note":"no load"})";
-  store_scale({1.002, 0.001, "tape"}, calibration);
+  SolveSettings& settings = calibration.settings.emplace();
+  settings.version = "0.9.9";
+  settings.place = "hall 3";
+  settings.note = "no load";
+  calibration.scale = {1.002, 0.001, "tape"};
   DataUse drive;
   drive.name = "drive.bag";
   drive.sha256 = "5e4d";
@@ -296,8 +299,7 @@ Calibration for_export() {
   Calibration calibration = example();
   calibration.robot.robot_id = "r-1";
   calibration.robot.ticks_per_rev = 4096.0;
-  calibration.extensions["contact_noise"] =
-      R"({"forward":{"value":1e-3},"sideways":{"value":1e-3},"yaw":{"value":5e-3}})";
+  calibration.contact_noise = ContactNoise{{1e-3, ""}, {1e-3, ""}, {5e-3, ""}};
   calibration.parameters = {{"left_wheel_diameter", {0.1485, 1e-4, "m"}},
                             {"right_wheel_diameter", {0.147, 1e-4, "m"}},
                             {"track_width", {0.41, 2e-4, "m"}},

@@ -27,8 +27,7 @@ const RobotDescription kRobot{0.15, 0.15, kTrack, 16384.0, std::nullopt, "", ""}
 Calibration calibration_of(double slip) {
   Calibration calibration = calib::odometry::nominal_calibration(kRobot);
   calibration.verdict = Verdict::accepted;
-  calibration.extensions[calib::odometry::kContactNoiseMember] =
-      calib::odometry::to_json({slip * M_SQRT1_2, 0.0, slip * M_SQRT2 / kTrack});
+  calibration.contact_noise = calib::odometry::entry_of({slip * M_SQRT1_2, 0.0, slip * M_SQRT2 / kTrack});
   return calibration;
 }
 
@@ -267,7 +266,7 @@ TEST(ExportNoise, a_calibration_that_states_none_says_so) {
   const auto text = configuration(calib::odometry::nominal_calibration(kRobot), "amcl", "cal.json");
   ASSERT_FALSE(text.ok());
   Calibration silent = calibration_of(kSlip);
-  silent.extensions.clear();
+  silent.contact_noise.reset();
   const auto none = amcl_yaml(silent, "cal.json");
   ASSERT_FALSE(none.ok());
   EXPECT_NE(none.error().text().find("states no noise"), std::string::npos);

@@ -84,7 +84,7 @@ TEST(ProvenApply, what_is_better_stays) {
   EXPECT_FALSE(applied.error);
   EXPECT_THAT(daemon.asked, ElementsAre("Apply, to be proven", "Straight", "Spin", "Store"));
   EXPECT_THAT(to_text(describe(applied)), HasSubstr("20.00"));
-  EXPECT_EQ(to_json(applied)["outcome"], "stored");
+  EXPECT_EQ(entry_of(applied).outcome, "stored");
 }
 
 TEST(ProvenApply, what_is_worse_in_one_thing_is_taken_back) {

@@ -51,7 +51,7 @@ TEST(WriteBacks, entries_of_a_robot_are_known_by_calibration_robot_and_controlle
     return text;
   };
   EXPECT_EQ(ids(calibration), "0002 0001 ");
-  calibration.extensions["settings"] = R"({"note":"another"})";
+  calibration.settings.emplace().note = "another";
   EXPECT_EQ(ids(calibration), "") << "neither the calibration nor its robot is known";
   calibration.robot.robot_id = "carrier-18";
   EXPECT_EQ(ids(calibration), "0003 ");

@@ -44,7 +44,7 @@ Calibration example() {
              Middleware::ros1}};
   c.discarded = {{"interval", "count does not continue", 3, 100, 0.1 + 0.2, 71.0}, {"file", "cut off", 1}};
   c.repairs = {{"times", "of reception", "stamps are in whole seconds"}};
-  c.extensions = {{"zz_own", R"({"b":1,"a":[null,true]})"}, {"aa", "\"text\""}};
+  c.unknown[""] = {{"zz_own", R"({"b":1,"a":[null,true]})"}, {"aa", "\"text\""}};
   return c;
 }
 
@@ -97,7 +97,7 @@ TEST(CalibrationFile, read_returns_what_was_written) {
   EXPECT_EQ(to_json(back), text);
   EXPECT_EQ(back.parameters[0].second.value, 0.1539999999999999);
   EXPECT_EQ(back.covariance, example().covariance);
-  EXPECT_EQ(back.extensions, example().extensions);
+  EXPECT_EQ(back.unknown, example().unknown);
   EXPECT_EQ(back.robot.lidar_pose, example().robot.lidar_pose);
   EXPECT_EQ(back.robot.controller_id, "0xfee/0xd15/7");
   EXPECT_EQ(back.methods[0].refused, "only 1 straight run");

@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "proto/calibration/calibration.hpp"
 #include "tests/value_of.hpp"
 
 namespace odomcalib::scale_test {
@@ -39,20 +40,21 @@ TEST(Scale, stands_in_the_file_with_the_deviation_of_every_parameter) {
   Calibration calibration;
   calibration.parameters = {{"track_width", {0.4, 0.0016, "m"}}, {"lidar_yaw", {0.1, 0.01, "rad"}}};
   EXPECT_EQ(to_json(calibration).find("std_absolute"), std::string::npos) << "no scale, no such deviation";
-  EXPECT_FALSE(scale_of(calibration));
-  store_scale({1.0, 0.003, "lidar data sheet"}, calibration);
+  calibration.scale = {1.0, 0.003, "lidar data sheet"};
   const std::string text = to_json(calibration);
   EXPECT_NE(text.find("\"std_absolute\": 0.002"), std::string::npos) << text;
   const auto read = value_of(calibration_from_json(text, "here"));
-  ASSERT_TRUE(scale_of(read));
-  EXPECT_EQ(scale_of(read)->source, "lidar data sheet");
+  ASSERT_TRUE(read.scale);
+  EXPECT_EQ(read.scale->source, "lidar data sheet");
   EXPECT_EQ(to_json(read), text);
 }
 
 TEST(Scale, that_is_not_understood_is_none) {
   Calibration calibration;
-  calibration.extensions["scale"] = "[1.0]";
-  EXPECT_FALSE(scale_of(calibration));
+  calibration.unknown[""]["scale"] = "[1.0]";
+  const auto read = value_of(calibration_from_json(to_json(calibration), "here"));
+  EXPECT_FALSE(read.scale);
+  EXPECT_EQ(read.unknown, calibration.unknown) << "it is kept";
 }
 
 }  // namespace

@@ -4,7 +4,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "proto/discarded_json.hpp"
+#include "proto/calibration/discarded_json.hpp"
 
 namespace odomcalib::left_out_test {
 namespace {

@@ -1,6 +1,6 @@
-#include "calib/selection/selection_json.hpp"
+#include "calib/selection/file_entries.hpp"
 
-#include <nlohmann/json.hpp>
+#include <utility>
 #include <variant>
 
 #include "calib/math/number_text.hpp"
@@ -38,14 +38,11 @@ std::string change_of_track(const std::vector<double>& c) {
 
 }  // namespace
 
-std::string considered_to_json(const std::vector<Considered>& considered) {
-  nlohmann::ordered_json list = nlohmann::ordered_json::array();
+std::vector<ConsideredTerm> entries_of(const std::vector<Considered>& considered) {
+  std::vector<ConsideredTerm> entries;
   for (const Considered& c : considered)
-    list.push_back({{"candidate", c.name},
-                    {"statistic", c.statistic},
-                    {"p_value", c.family_p_value},
-                    {"outcome", c.outcome}});
-  return list.dump();
+    entries.push_back({c.name, c.statistic, c.family_p_value, c.outcome});
+  return entries;
 }
 
 std::string event_to_text(const terms::FittedSmoothTerm& event, const math::Pose& mount) {
@@ -71,21 +68,22 @@ std::vector<EffectResult> effect_results(const std::vector<terms::LidarFinding>&
   return all;
 }
 
-std::string lidar_smooth_terms_to_json(const std::vector<terms::LidarFinding>& findings) {
-  nlohmann::ordered_json list = nlohmann::ordered_json::array();
+std::vector<LidarCurve> lidar_curves(const std::vector<terms::LidarFinding>& findings) {
+  std::vector<LidarCurve> curves;
   for (const terms::LidarFinding& finding : findings) {
     if (finding.effect->is_named()) continue;
-    nlohmann::ordered_json coefficients = nlohmann::ordered_json::object();
+    LidarCurve curve{finding.effect->name(),
+                     completes(finding, findings),
+                     finding.effect->is_correctable(),
+                     finding.before,
+                     finding.after,
+                     {}};
     const auto parameters = finding.effect->parameters();
-    for (std::size_t k = 0; k < parameters.size(); ++k) coefficients[parameters[k].name] = finding.values[k];
-    list.push_back({{"variable", finding.effect->name()},
-                    {"law_of_a_name", completes(finding, findings)},
-                    {"corrected", finding.effect->is_correctable()},
-                    {"held_out_before", finding.before},
-                    {"held_out_after", finding.after},
-                    {"coefficients", coefficients}});
+    for (std::size_t k = 0; k < parameters.size(); ++k)
+      curve.coefficients.emplace_back(parameters[k].name, finding.values[k]);
+    curves.push_back(std::move(curve));
   }
-  return list.dump();
+  return curves;
 }
 
 }  // namespace odomcalib::calib::selection

@@ -13,7 +13,7 @@
 
 namespace odomcalib::calib::selection {
 
-std::string considered_to_json(const std::vector<Considered>& considered);
+std::vector<ConsideredTerm> entries_of(const std::vector<Considered>& considered);
 
 /// The change, its moment and size, and the state that the values stand for.
 /// @param event a smooth term that happens at once
@@ -23,8 +23,7 @@ std::string event_to_text(const terms::FittedSmoothTerm& event, const math::Pose
 /// The named findings about the lidar.
 std::vector<EffectResult> effect_results(const std::vector<terms::LidarFinding>& findings);
 
-/// Member "lidar_smooths": what the lidar's error depends on without a name, and the coefficients.
-inline constexpr const char* kLidarSmoothTermsMember = "lidar_curves";
-std::string lidar_smooth_terms_to_json(const std::vector<terms::LidarFinding>& findings);
+/// Errors of the lidar without a name: the variables that they depend on, and the coefficients.
+std::vector<LidarCurve> lidar_curves(const std::vector<terms::LidarFinding>& findings);
 
 }  // namespace odomcalib::calib::selection
