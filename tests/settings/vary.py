@@ -1,0 +1,218 @@
+#!/usr/bin/env python3
+"""Varies the numbers that calib decides by, and shows which of them change a calibration.
+
+Usage: tests/settings/vary.py prepare --into TREE                       numbers of TREE, a copy of this tree, obey the environment
+       tests/settings/vary.py run BIN --rows FILE [--jobs N]            solves recordings with each number halved and doubled
+       tests/settings/vary.py table --rows FILE...                      all numbers as a page, with what each changes
+       tests/settings/vary.py --self-test
+
+A number is a constant of a file calib/*/settings.hpp. In TREE each place that uses one asks the environment (varied.hpp), so that
+one build serves all of them; what the compiler has to know (sizes of arrays, constants made of constants) stays. BIN holds
+odomcalibctl and odomcalib-sim-record of TREE. Recordings are simulated, as tests/regression/compare makes them. A number that the
+program does not read while it solves a recording is not varied there. FILE gets a line of JSON a number, factor and recording, and
+is continued where it ends.
+
+    cp -a . ../varied && tests/settings/vary.py prepare --into ../varied
+    cmake -S ../varied -B ../varied/build -G Ninja -DCMAKE_BUILD_TYPE=Release -DCMAKE_CXX_FLAGS="-std=c++20 -include $PWD/../varied/tests/settings/varied.hpp"
+    cmake --build ../varied/build --target odomcalibctl odomcalib-sim-record
+    tests/settings/vary.py run ../varied/build/bin --rows rows.jsonl
+"""
+
+import argparse
+import collections
+import concurrent.futures
+import hashlib
+import json
+import os
+import pathlib
+import re
+import subprocess
+import sys
+import tempfile
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+FACTORS = (0.5, 2.0)
+# Arguments of odomcalib-sim-record: drives with and without an effect, named, flagged and of the lidar.
+RECORDINGS = {
+    "furnished": ["--room", "furnished", "--drive", "guided", "--seed", "5100"],
+    "corridor": ["--room", "corridor", "--drive", "guided", "--seed", "5101"],
+    "random": ["--room", "random", "--drive", "random", "--seed", "5102"],
+    "rest": ["--room", "furnished", "--drive", "rest", "--seed", "5103"],
+    "backlash": ["--effect", "gear_play", "--seed", "5104"],
+    "loose_wheel": ["--effect", "loose_wheel", "--seed", "5105"],
+    "cover_glass": ["--effect", "cover_glass", "--seed", "5106"],
+    "count_queue": ["--effect", "count_queue", "--seed", "5107"],
+}
+CONSTANT = re.compile(r"^inline constexpr ([\w:]+) ([^;]*);", re.M)
+NAME = re.compile(r"\b(k[A-Z]\w*) =")
+
+
+def layer_of(file, root):
+    parts = file.relative_to(root / "calib").parts
+    return parts[0] if len(parts) > 1 else "calib"
+
+
+def settings_of(root):
+    """(layer, name) of every constant, in the order of files and lines."""
+    found = []
+    for file in sorted((root / "calib").glob("**/settings.hpp")):
+        for constant in CONSTANT.finditer(file.read_text(encoding="utf-8")):
+            found += [(layer_of(file, root), name) for name in NAME.findall(constant.group(2))]
+    return found
+
+
+def with_varied(text, own_layer, numbers):
+    """A source whose uses of settings ask the environment."""
+    def replaced(match):
+        qualifier, name = match.group(1) or "", match.group(2)
+        layers = [part for part in qualifier.split("::") if part]
+        candidates = [layers[-1]] if layers else [own_layer, "calib"]
+        number = next((numbers[layer, name] for layer in candidates if (layer, name) in numbers), None)
+        return match.group(0) if number is None else f"odomcalib_varied_value<{number}>({match.group(0)})"
+
+    lines = []
+    # Names that a using declaration makes known without their namespace.
+    known = {name: qualifier for qualifier, name in re.findall(r"^\s*using ((?:\w+::)*)settings::(k\w+);", text, re.M)}
+    for line in text.split("\n"):
+        code, comment_mark, comment = line.partition("//")
+        if not re.match(r"\s*(#|using )", code):
+            code = re.sub(r"(?<![\w:])((?:\w+::)*)settings::(k\w+)", replaced, code)
+            for name, qualifier in known.items():
+                layer = [part for part in qualifier.split("::") if part]
+                number = numbers.get((layer[-1] if layer else own_layer, name))
+                if number is not None:
+                    code = re.sub(rf"(?<![\w:]){name}\b", f"odomcalib_varied_value<{number}>({name})", code)
+        lines.append(code + comment_mark + comment)
+    return "\n".join(lines)
+
+
+def prepare(tree):
+    numbers = {setting: number for number, setting in enumerate(settings_of(tree))}
+    for file in sorted((tree / "calib").glob("**/*.[ch]pp")):
+        if file.name != "settings.hpp":
+            text = file.read_text(encoding="utf-8")
+            changed = with_varied(text, layer_of(file, tree), numbers)
+            if changed != text:
+                file.write_text(changed, encoding="utf-8")
+    (tree / "varied.json").write_text(json.dumps([f"{layer}.{name}" for layer, name in numbers]), encoding="utf-8")
+    print(f"{len(numbers)} numbers")
+
+
+def solved(program, recording, environment):
+    """Exit status and digest of the calibration; with the numbers that were read."""
+    with tempfile.TemporaryDirectory() as folder:
+        out, read = pathlib.Path(folder) / "cal.json", pathlib.Path(folder) / "read"
+        try:
+            done = subprocess.run([program, "solve", recording, "--out", out], stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, check=False,
+                                  timeout=300, env={**os.environ, **environment, "ODOMCALIB_VARIED_READ": str(read)})
+        except subprocess.TimeoutExpired:
+            return "time", "", []
+        digest = hashlib.sha256((out.read_bytes() if out.exists() else b"") + done.stderr).hexdigest()
+        return done.returncode, digest, [int(line) for line in read.read_text().split()] if read.exists() else []
+
+
+def run(bins, rows, jobs):
+    names = json.loads((bins.parents[1] / "varied.json").read_text(encoding="utf-8"))
+    folder = rows.with_suffix(".recordings")
+    folder.mkdir(exist_ok=True)
+    done = collections.defaultdict(set)
+    if rows.exists():
+        for line in map(json.loads, rows.read_text(encoding="utf-8").splitlines()):
+            done[line["recording"]].add((line["setting"], line["factor"]))
+    with concurrent.futures.ThreadPoolExecutor(jobs) as pool, rows.open("a", encoding="utf-8") as out:
+        def write(**row):
+            out.write(json.dumps(row) + "\n")
+            out.flush()
+
+        for recording, arguments in RECORDINGS.items():
+            file = folder / f"{recording}.jsonl.gz"
+            if not file.exists():
+                subprocess.run([bins / "odomcalib-sim-record", *arguments, "--out", file], check=True, stdout=subprocess.DEVNULL)
+            status, plain, read = solved(bins / "odomcalibctl", file, {})
+            for number, name in enumerate(names):
+                if number not in read and (name, None) not in done[recording]:
+                    write(setting=name, factor=None, recording=recording, changed=False)
+            trials = [(number, factor) for number in read for factor in FACTORS if (names[number], factor) not in done[recording]]
+            solve = lambda trial: solved(bins / "odomcalibctl", file, {"ODOMCALIB_VARIED": f"{trial[0]}:{trial[1]}"})
+            for (number, factor), (other_status, digest, _) in zip(trials, pool.map(solve, trials)):
+                write(setting=names[number], factor=factor, recording=recording, changed=(digest, other_status) != (plain, status))
+            print(f"{recording}: {len(read)} numbers read, {len(trials)} solved", file=sys.stderr)
+
+
+def described():
+    """Layer, name, value and comment of every number, as its settings file has them."""
+    rows = []
+    for file in sorted((ROOT / "calib").glob("**/settings.hpp")):
+        text = file.read_text(encoding="utf-8")
+        for match in re.finditer(r"((?:^///.*\n)*)^inline constexpr [\w:]+ ([^;]*);", text, re.M):
+            comment = " ".join(line[3:].strip() for line in match.group(1).splitlines())
+            parts = re.split(r",\s*(?=k[A-Z]\w* =)", match.group(2))
+            for part in parts:
+                name, value = (side.strip() for side in part.split("=", 1))
+                rows.append((layer_of(file, ROOT), name, " ".join(value.split()), comment))
+    return rows
+
+
+def effect_of(lines, factor):
+    """Of the recordings that were solved with a number times the factor: how many changed, in words."""
+    of_factor = [line for line in lines if line["factor"] == factor]
+    if not of_factor:
+        return "not read"
+    changed = sum(line["changed"] for line in of_factor)
+    return f"{changed} of {len(of_factor)}"
+
+
+def table(files):
+    by_setting = collections.defaultdict(list)
+    for file in files:
+        for line in map(json.loads, file.read_text(encoding="utf-8").splitlines()):
+            by_setting[line["setting"]].append(line)
+    layer = None
+    for of, name, value, comment in described():
+        if of != layer:
+            layer = of
+            print(f"\n## {layer}\n\n| number | value | what it is, and where it comes from | halved | doubled |\n| --- | --- | --- | --- | --- |")
+        lines = by_setting[f"{of}.{name}"]
+        cells = [effect_of(lines, factor) if lines else "–" for factor in FACTORS]
+        print(f"| `{name}` | {value} | {comment.replace('|', chr(92) + '|')} | {cells[0]} | {cells[1]} |")
+
+
+def self_test():
+    numbers = {("fit", "kA"): 0, ("look", "kB"): 1, ("calib", "kC"): 2}
+    for text, expected in [
+            ("x = settings::kA;", "x = odomcalib_varied_value<0>(settings::kA);"),
+            ("x = look::settings::kB * settings::kC;  // settings::kA",
+             "x = odomcalib_varied_value<1>(look::settings::kB) * odomcalib_varied_value<2>(settings::kC);  // settings::kA"),
+            ("using look::settings::kB;\nif (kB > kBar) x();", "using look::settings::kB;\nif (odomcalib_varied_value<1>(kB) > kBar) x();"),
+            ("#include <settings::kA>", "#include <settings::kA>"), ("x = other::settings::kA;", "x = other::settings::kA;")]:
+        found = with_varied(text, "fit", numbers)
+        if found != expected:
+            sys.exit(f"FAILED: {text}: {found}")
+    if len(settings_of(ROOT)) < 500 or len({*settings_of(ROOT)}) != len(settings_of(ROOT)) or len(described()) < len(settings_of(ROOT)):
+        sys.exit("FAILED: not every number of calib is found, or one twice")
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("what", nargs="?", choices=["prepare", "run", "table"])
+    parser.add_argument("bin", nargs="?", type=pathlib.Path)
+    parser.add_argument("--into", type=pathlib.Path)
+    parser.add_argument("--rows", nargs="+", type=pathlib.Path)
+    parser.add_argument("--jobs", type=int, default=os.cpu_count() or 1)
+    parser.add_argument("--self-test", action="store_true")
+    arguments = parser.parse_args()
+    if arguments.self_test:
+        self_test()
+    elif arguments.what == "prepare" and arguments.into:
+        prepare(arguments.into.resolve())
+    elif arguments.what == "run" and arguments.bin and arguments.rows:
+        run(arguments.bin.resolve(), arguments.rows[0], arguments.jobs)
+    elif arguments.what == "table" and arguments.rows:
+        table(arguments.rows)
+    else:
+        parser.error("prepare --into TREE, run BIN --rows FILE, or table --rows FILE")
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
