@@ -2,6 +2,7 @@
 // what was meant.
 #include <gtest/gtest.h>
 
+#include "drivers/base/canopen/settings.hpp"
 #include "tests/unit/drivers/base/cia402/drive_bench.hpp"
 
 namespace odomcalib::drivers::late_frames_test {
