@@ -58,7 +58,7 @@ Solution calibrate(measurement::Dataset opened, const terms::Request& request, c
   fit = stages::align_clocks(std::move(fit), request, how);
   fit = stages::choose_scan_stamps(std::move(fit), how);
   fit = stages::choose_sweep_timing(std::move(fit), request, how);
-  auto [corrected, lidar, placement] = stages::correct_lidar(std::move(fit), request, how);
+  auto [corrected, lidar, placement] = stages::correct_lidar(std::move(fit), request, how, options.rules);
   placement = stages::placement_of(corrected, std::move(placement), progress);
   fit = stages::locate(std::move(corrected), placement);
   if (fit.failure) return {report::refused(fit, options.cuts), {}};

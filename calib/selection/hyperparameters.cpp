@@ -92,9 +92,10 @@ std::span<const double> values_of(const FittedModel& model, std::size_t index) {
 }
 
 /// The drive can separate it from the wheels, and robots may be that bad.
-bool is_credible(const vehicle::Effect& smooth, const estimation::FitResult& before,
+bool is_credible(const FitTask& task, const vehicle::Effect& smooth, const estimation::FitResult& before,
                  const estimation::FitResult& after) {
-  return !smooth_spoils_base(smooth, before, after) && impossibility(smooth, after).empty();
+  return (!smooth_spoils_base(smooth, before, after) && impossibility(smooth, after).empty()) ||
+         !task.rules.has(Rule::credible_shape);
 }
 
 /// Polynomials of a lower degree.
@@ -110,7 +111,7 @@ std::optional<Reshaped> fitted_in_shape(const FitTask& task, const FittedModel& 
                                         const std::vector<measurement::NoiseModel>& noise) {
   const auto effect = make_smooth_term_effect(shape);
   auto fitted = with_effect(task, model, effect, noise);
-  if (!fitted || !is_credible(*effect, model.fit, fitted->fit)) return std::nullopt;
+  if (!fitted || !is_credible(task, *effect, model.fit, fitted->fit)) return std::nullopt;
   return Reshaped{shape, std::move(*fitted)};
 }
 
@@ -131,7 +132,7 @@ std::vector<Reshaped> reshaped(const FitTask& task, const Reshaped& now,
       start.head(kept) = model.fit.parameters.head(kept);
     }
     auto fit = task.fit(effects, start, model.fit.noise);
-    if (!fit || !is_credible(*effects.back(), model.fit, *fit)) continue;
+    if (!fit || !is_credible(task, *effects.back(), model.fit, *fit)) continue;
     all.push_back({shape, {std::move(effects), std::move(*fit)}});
   }
   return all;

@@ -47,8 +47,8 @@ bool is_superfluous(const terms::LidarFinding& finding) {
 class LidarTrace {
  public:
   LidarTrace(const std::vector<measurement::HeadingPair>& pairs,
-             const std::vector<terms::LidarEffectPtr>& candidates)
-      : scores_(pairs, candidates), refused_(candidates.size(), false) {}
+             const std::vector<terms::LidarEffectPtr>& candidates, const RuleSet& rules)
+      : scores_(pairs, candidates), rules_(rules), refused_(candidates.size(), false) {}
 
   std::vector<terms::LidarFinding> run() {
     while (accepted_.size() < settings::kMostLidarFindings && add_best()) {
@@ -73,8 +73,9 @@ class LidarTrace {
     for (const std::size_t c : in_order(scores)) {
       if (refused_[c]) continue;
       const auto validation = scores_.held_out(accepted_, c);
-      const bool holds = validation.z >= effect(c).least_z() && is_worthwhile(c, validation);
-      if (!holds || !matters(c)) {
+      const bool holds = (validation.z >= effect(c).least_z() && is_worthwhile(c, validation)) ||
+                         !rules_.has(Rule::lidar_gain);
+      if (!holds || (!matters(c) && rules_.has(Rule::lidar_size))) {
         refused_[c] = true;
         if (holds) refuse_lesser_names(c, scores);
         continue;
@@ -91,7 +92,8 @@ class LidarTrace {
     if (effect(smooth).is_named()) return;
     for (std::size_t c = 0; c < scores.size(); ++c)
       if (effect(c).is_named() && effect(c).covariate() == effect(smooth).covariate() &&
-          scores[c].statistic < effect(c).share_of_free_term() * scores[smooth].statistic)
+          scores[c].statistic < effect(c).share_of_free_term() * scores[smooth].statistic &&
+          rules_.has(Rule::lidar_part_of_an_error))
         refused_[c] = true;
   }
 
@@ -100,7 +102,8 @@ class LidarTrace {
   [[nodiscard]] std::vector<std::size_t> in_order(const std::vector<LidarScores::Score>& scores) const {
     std::vector<std::size_t> order;
     for (std::size_t c = 0; c < scores.size(); ++c)
-      if (scores[c].degrees > 0 && scores[c].family_p_value <= settings::kLidarLevel && !refused_[c])
+      if (scores[c].degrees > 0 && !refused_[c] &&
+          (scores[c].family_p_value <= settings::kLidarLevel || !rules_.has(Rule::lidar_significance)))
         order.push_back(c);
     const auto rank = [&](std::size_t c) { return penalised(scores[c]); };
     std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return rank(a) > rank(b); });
@@ -143,7 +146,7 @@ class LidarTrace {
   void eliminate_superfluous() {
     const std::vector<terms::LidarFinding> all = findings();
     for (std::size_t k = all.size() - 1; k-- > 0;)
-      if (is_superfluous(all[k])) {
+      if (is_superfluous(all[k]) && rules_.has(Rule::lidar_elimination)) {
         accepted_.erase(accepted_.begin() + static_cast<std::ptrdiff_t>(k));
         evidence_.erase(evidence_.begin() + static_cast<std::ptrdiff_t>(k));
       }
@@ -163,6 +166,7 @@ class LidarTrace {
   }
 
   LidarScores scores_;
+  RuleSet rules_;
   std::vector<std::size_t> accepted_;
   std::vector<bool> refused_;
   std::vector<terms::LidarFinding> evidence_;
@@ -183,20 +187,20 @@ double slope(const std::vector<terms::LidarFinding>& findings, double bearing, d
 }  // namespace
 
 std::vector<terms::LidarFinding> trace_lidar(const std::vector<measurement::HeadingPair>& pairs,
-                                             bool all_round, bool ranges_are_judged) {
+                                             bool all_round, bool ranges_are_judged, const RuleSet& rules) {
   if (pairs.size() < settings::kFewestHeadingPairs) return {};
   std::vector<terms::LidarEffectPtr> candidates = terms::lidar_catalogue(all_round);
   for (const auto& smooth : terms::lidar_smooths()) candidates.push_back(smooth);
   if (auto sector = terms::make_sector_error(bearings_in(pairs))) candidates.push_back(std::move(sector));
   if (ranges_are_judged)
     std::erase_if(candidates, [](const terms::LidarEffectPtr& effect) { return effect->is_judged_in_map(); });
-  return LidarTrace(pairs, candidates).run();
+  return LidarTrace(pairs, candidates, rules).run();
 }
 
 std::vector<terms::LidarFinding> fit_lidar(const std::vector<measurement::HeadingPair>& pairs,
                                            const std::vector<terms::LidarEffectPtr>& effects) {
   if (pairs.empty()) return {};
-  return LidarTrace(pairs, effects).fit_all();
+  return LidarTrace(pairs, effects, {}).fit_all();
 }
 
 double range_scale_uncertainty(const std::vector<terms::LidarFinding>& findings,

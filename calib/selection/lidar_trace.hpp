@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "calib/measurement/heading_pairs.hpp"
+#include "calib/selection/rules.hpp"
 #include "calib/terms/lidar_effect.hpp"
 #include "proto/recording/recording.hpp"
 
@@ -16,8 +17,10 @@ namespace odomcalib::calib::selection {
 /// @param all_round whether the head sees all directions
 /// @param ranges_are_judged a map, which sees them better, has shown what there is of an offset or of
 /// incidence
+/// @param rules all of them but in an ablation
 std::vector<terms::LidarFinding> trace_lidar(const std::vector<measurement::HeadingPair>& pairs,
-                                             bool all_round, bool ranges_are_judged = false);
+                                             bool all_round, bool ranges_are_judged = false,
+                                             const RuleSet& rules = {});
 
 /// Values of given effects, whether they are significant or not.
 std::vector<terms::LidarFinding> fit_lidar(const std::vector<measurement::HeadingPair>& pairs,

@@ -102,8 +102,9 @@ double deviation_of_offset(const measurement::RangeEvidence& left) {
 
 class RangeTracing {
  public:
-  RangeTracing(Adjusted state, const measurement::PlacedBeams& used, const measurement::PlacedBeams& others)
-      : state_(std::move(state)), used_(used), others_(others) {}
+  RangeTracing(Adjusted state, const measurement::PlacedBeams& used, const measurement::PlacedBeams& others,
+               const RuleSet& rules)
+      : state_(std::move(state)), used_(used), others_(others), rules_(rules) {}
 
   measurement::RangeTrace run() {
     measurement::RangeTrace trace;
@@ -124,7 +125,7 @@ class RangeTracing {
     const double p_value = p_value_of_offset(state_.evidence);
     Adjusted better = adjusted_with(offset_step, state_, used_);
     const double value = better.options.range_error(0), deviation = deviation_of_offset(better.evidence);
-    if (std::abs(value) < settings::kClearRangeError * deviation) return {};
+    if (std::abs(value) < settings::kClearRangeError * deviation && rules_.has(Rule::range_gain)) return {};
     const auto validation = advance(std::move(better));
     if (!validation) return {};
     return {range_finding(terms::make_range_bias(), p_value, *validation, Eigen::VectorXd::Constant(1, value),
@@ -147,7 +148,7 @@ class RangeTracing {
   /// To a state that scans that were not used confirm.
   std::optional<RangeGain> advance(Adjusted better) {
     const RangeGain validation = prove(state_, better, others_);
-    if (validation.z < settings::kHeldOutZ) return std::nullopt;
+    if (validation.z < settings::kHeldOutZ && rules_.has(Rule::range_gain)) return std::nullopt;
     state_ = std::move(better);
     return validation;
   }
@@ -155,6 +156,7 @@ class RangeTracing {
   Adjusted state_;
   const measurement::PlacedBeams& used_;
   const measurement::PlacedBeams& others_;
+  RuleSet rules_;
 };
 
 }  // namespace
@@ -163,8 +165,8 @@ measurement::RangeTrace trace_ranges(const measurement::RangeEvidence& evidence,
                                      const measurement::PlacedBeams& used,
                                      const measurement::PlacedBeams& others,
                                      const measurement::PlaceOptions& options,
-                                     const measurement::WallMap& map) {
-  return RangeTracing({map, options, evidence}, used, others).run();
+                                     const measurement::WallMap& map, const RuleSet& rules) {
+  return RangeTracing({map, options, evidence}, used, others, rules).run();
 }
 
 }  // namespace odomcalib::calib::selection

@@ -17,6 +17,9 @@ enum class Rule : std::size_t {
   size_that_matters,
   no_contradiction,
   base_determined,
+  // Conditions on its score.
+  significance,
+  hopeless_waves,
   // Conditions on its gain.
   worthwhile_gain,
   certain_gain,
@@ -36,6 +39,7 @@ enum class Rule : std::size_t {
   smooth_term_for_name,
   exclusions,
   backward_elimination,
+  few_terms,
   close_competitors,
   // How a candidate is fitted.
   wider_noise,
@@ -43,11 +47,19 @@ enum class Rule : std::size_t {
   centred_term,
   other_shape,
   best_shape,
+  credible_shape,
   few_bends,
   median_threshold,
   hyperparameter_penalty,
+  // Errors of the lidar, before any term of the wheels.
+  lidar_significance,
+  lidar_gain,
+  lidar_size,
+  lidar_part_of_an_error,
+  lidar_elimination,
+  range_gain,
 };
-inline constexpr std::size_t kRules = static_cast<std::size_t>(Rule::hyperparameter_penalty) + 1;
+inline constexpr std::size_t kRules = static_cast<std::size_t>(Rule::range_gain) + 1;
 
 /// One row of the table.
 struct RuleRow {

@@ -126,7 +126,7 @@ class Search {
   void exclude_hopeless_waves() {
     for (std::size_t k = 0; round_ && k < candidates_.size(); ++k)
       if (candidates_[k].smooth && terms::basis_as<terms::Wave>(*candidates_[k].smooth) &&
-          round_->score(k).family_p_value > settings::kHopelessWave)
+          round_->score(k).family_p_value > settings::kHopelessWave && has(Rule::hopeless_waves))
         candidates_[k].excluded = true;
   }
 
@@ -142,7 +142,7 @@ class Search {
   }
 
   [[nodiscard]] bool may_add_name() const {
-    return result_.findings.size() < settings::kMostFindings &&
+    return (result_.findings.size() < settings::kMostFindings || !has(Rule::few_terms)) &&
            !(result_.has_unnamed() && has(Rule::names_before_smooth_terms));
   }
 
@@ -339,7 +339,7 @@ class Search {
   }
 
   bool accept_smooth(std::size_t index) {
-    if (result_.smooths.size() >= settings::kMostSmooths) return false;
+    if (result_.smooths.size() >= settings::kMostSmooths && has(Rule::few_terms)) return false;
     auto trial = happens_at_once(*candidates_[index].smooth)
                      ? refit_as(index, at_likeliest_change_point(task_, basis(), *candidates_[index].smooth))
                      : round_->refit(index);

@@ -167,7 +167,8 @@ std::vector<Eigen::VectorXd> SearchRound::model_uncertainties_of(const std::vect
 bool is_clock(const Candidate& candidate) { return candidate.effect->storage() == vehicle::Storage::driver; }
 
 bool passes(std::size_t candidate, const SearchRound& round, const SearchResult& found) {
-  return round.score(candidate).family_p_value <= level(round.candidate(candidate), found, round.rules());
+  return round.score(candidate).family_p_value <= level(round.candidate(candidate), found, round.rules()) ||
+         !round.rules().has(Rule::significance);
 }
 
 std::optional<std::size_t> best_smooth(const SearchRound& round, const SearchResult& found) {

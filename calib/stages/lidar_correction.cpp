@@ -101,6 +101,7 @@ struct Task {
   ingest::Recordings uncorrected;
   const terms::Request& request;
   const estimation::Settling& how;
+  const selection::RuleSet& rules;
 
   [[nodiscard]] bool is_requested() const { return !request.lidar_effects.empty(); }
 };
@@ -117,7 +118,7 @@ Findings joined(const Findings& known, const Findings& found) {
 /// Beams spread too wide bend the walls of a map, as ranges that are too short would.
 Findings wrong_angles(const estimation::Fit& fit, const Task& task) {
   if (task.is_requested()) return {};
-  Findings found = selection::trace_lidar(heading_pairs(fit), sees_all_round(fit.dataset), true);
+  Findings found = selection::trace_lidar(heading_pairs(fit), sees_all_round(fit.dataset), true, task.rules);
   if (found.empty() || found.front().effect->name() != terms::make_angle_scale()->name()) return {};
   found.resize(1);
   return found;
@@ -127,7 +128,8 @@ Findings wrong_angles(const estimation::Fit& fit, const Task& task) {
 Findings wrong_scans(const LidarCorrection& now, const Task& task) {
   const auto pairs = heading_pairs(now.fit);
   if (task.is_requested()) return selection::fit_lidar(pairs, task.request.lidar_effects);
-  return selection::trace_lidar(pairs, sees_all_round(now.fit.dataset), !now.placement.paths.empty());
+  return selection::trace_lidar(pairs, sees_all_round(now.fit.dataset), !now.placement.paths.empty(),
+                                task.rules);
 }
 
 measurement::Dataset without(const Findings& findings, const measurement::Dataset& dataset,
@@ -171,8 +173,8 @@ LidarCorrection take_out(const Findings& found, LidarCorrection before, const Ta
 }  // namespace
 
 LidarCorrection correct_lidar(estimation::Fit fit, const terms::Request& request,
-                              const estimation::Settling& how) {
-  const Task task{fit.dataset.recordings, request, how};
+                              const estimation::Settling& how, const selection::RuleSet& rules) {
+  const Task task{fit.dataset.recordings, request, how, rules};
   const bool may_trace = request.is_automatic || task.is_requested();
   LidarCorrection now{std::move(fit)};
   if (now.fit.failure || !may_trace || !now.fit.dataset.reference_is_scans()) return now;
@@ -180,7 +182,7 @@ LidarCorrection correct_lidar(estimation::Fit fit, const terms::Request& request
   now = take_out(found, std::move(now), task, Looks::twice);
   if (now.fit.failure) return now;
   now.placement =
-      place_every_scan(now.fit, how.progress, task.is_requested() ? Ranges::believed : Ranges::traced);
+      place_every_scan(now.fit, how.progress, task.is_requested() ? Ranges::believed : Ranges::traced, rules);
   found = common_findings(now.placement.paths);
   now = take_out(found, std::move(now), task, Looks::once);
   if (now.fit.failure) return now;

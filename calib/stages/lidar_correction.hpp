@@ -6,6 +6,7 @@
 
 #include "calib/estimation/fit.hpp"
 #include "calib/measurement/placement.hpp"
+#include "calib/selection/rules.hpp"
 #include "calib/terms/lidar_effect.hpp"
 
 namespace odomcalib::calib::stages {
@@ -19,7 +20,8 @@ struct LidarCorrection {
 /// First wrong angles; then wrong ranges, in a map of walls; then the others, and these too where there is no
 /// map, in pairs of scans. A correction that nobody requested and that the wheels contradict is rejected.
 /// @param request names errors that are fitted whether they are significant or not; automatic: looked for
+/// @param rules all of them but in an ablation
 LidarCorrection correct_lidar(estimation::Fit fit, const terms::Request& request,
-                              const estimation::Settling& how);
+                              const estimation::Settling& how, const selection::RuleSet& rules = {});
 
 }  // namespace odomcalib::calib::stages

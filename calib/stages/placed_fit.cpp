@@ -83,11 +83,12 @@ std::vector<estimation::PathData> path_data(const measurement::Dataset& dataset,
 }  // namespace
 
 measurement::Placement place_every_scan(const estimation::Fit& fit, const measurement::Progress& progress,
-                                        Ranges ranges) {
+                                        Ranges ranges, const selection::RuleSet& rules) {
   if (!fit.dataset.has_motions_alone()) progress("placing every scan", 0.0);
-  const measurement::RangeTracer tracer =
-      ranges == Ranges::traced ? measurement::RangeTracer(selection::trace_ranges) : nullptr;
-  return place_all(fit.dataset, fit.model, tracer);
+  if (ranges == Ranges::believed) return place_all(fit.dataset, fit.model, nullptr);
+  return place_all(fit.dataset, fit.model, [&rules](const auto&... of_the_map) {
+    return selection::trace_ranges(of_the_map..., rules);
+  });
 }
 
 measurement::Placement placement_of(const estimation::Fit& fit, measurement::Placement known,

@@ -3,6 +3,7 @@
 
 #include "calib/estimation/fit.hpp"
 #include "calib/measurement/placement.hpp"
+#include "calib/selection/rules.hpp"
 #include "calib/selection/search_result.hpp"
 
 namespace odomcalib::calib::stages {
@@ -10,8 +11,10 @@ namespace odomcalib::calib::stages {
 /// Whether errors of the ranges are looked for while scans are placed.
 enum class Ranges { believed, traced };
 
+/// @param rules by which errors of the ranges are looked for
 measurement::Placement place_every_scan(const estimation::Fit& fit, const measurement::Progress& progress,
-                                        Ranges ranges = Ranges::believed);
+                                        Ranges ranges = Ranges::believed,
+                                        const selection::RuleSet& rules = {});
 
 /// The one that is known, where it is of the fit's scans, or else a new one.
 measurement::Placement placement_of(const estimation::Fit& fit, measurement::Placement known,

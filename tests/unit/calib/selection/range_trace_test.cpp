@@ -69,11 +69,11 @@ Seen seen(const Look& look) {
   return all;
 }
 
-Traced traced(const Look& look) {
+Traced traced(const Look& look, const RuleSet& rules = {}) {
   Seen all = seen(look);
   const measurement::RangeEvidence evidence =
       adjust_map(all.used.beams, all.options, all.map, all.used.places);
-  return {evidence, trace_ranges(evidence, all.used, all.others, all.options, all.map)};
+  return {evidence, trace_ranges(evidence, all.used, all.others, all.options, all.map, rules)};
 }
 
 Traced traced(const RangeError& error) {
@@ -147,6 +147,15 @@ TEST(RangeTrace, a_head_whose_beams_point_aside_has_no_offset) {
     for (const terms::LidarFinding& finding : found.trace.findings)
       EXPECT_NE(finding.effect->name(), "range_bias") << finding.values[0] << " +- " << finding.deviations[0];
   }
+}
+
+TEST(RangeTrace, a_head_whose_beams_point_aside_has_one_without_the_rule_of_its_gain) {
+  const Look look = [](const math::Pose& pose, unsigned seed) {
+    return askew_scan(pose, seed, [](double angle) { return -0.03 * std::sin(3.0 * angle); });
+  };
+  const Traced found = traced(look, RuleSet().without(Rule::range_gain));
+  ASSERT_FALSE(found.trace.findings.empty());
+  EXPECT_EQ(found.trace.findings[0].effect->name(), "range_bias");
 }
 
 // The gain of a map from one more adjustment is no gain of the law that it was adjusted with.

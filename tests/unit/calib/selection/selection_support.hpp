@@ -104,10 +104,10 @@ inline measurement::FitData measured(const vehicle::DriveModel& model, const veh
 }
 
 /// Result of the search on these data.
-inline SearchResult searched(const measurement::FitData& data) {
+inline SearchResult searched(const measurement::FitData& data, const RuleSet& rules = {}) {
   const auto fit = estimation::fit_joint({&data, 1}, {}, vehicle::to_vector(kBase));
   EXPECT_TRUE(fit) << "seed " << kSeed;
-  return search_effects({&data, 1}, {}, fit.value(), std::vector<bool>(vehicle::kBaseCount, false), {},
+  return search_effects({&data, 1}, {}, fit.value(), std::vector<bool>(vehicle::kBaseCount, false), rules,
                         [](double) {});
 }
 

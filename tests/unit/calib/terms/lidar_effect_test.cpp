@@ -276,5 +276,58 @@ TEST(LidarEffect, of_none_is_found_in_noise) {
   }
 }
 
+using selection::Rule;
+using selection::RuleSet;
+
+/// Chance and scans that it was not fitted to are two tests of their own: noise passes either in some draw.
+TEST(LidarEffect, of_none_is_found_in_noise_without_the_rules_against_it) {
+  constexpr unsigned kSeed = 4;
+  std::mt19937 random(kSeed);
+  const auto pairs = sixty_pairs([](const Sighting&) { return BeamShift{}; }, random);
+  const RuleSet anything = RuleSet().without(Rule::lidar_size);
+  const RuleSet untested = anything.without(Rule::lidar_gain).without(Rule::lidar_significance);
+  EXPECT_FALSE(selection::trace_lidar(pairs, false, false, untested).empty()) << "seed " << kSeed;
+  EXPECT_TRUE(selection::trace_lidar(pairs, false, false, anything.without(Rule::lidar_gain)).empty());
+  EXPECT_TRUE(selection::trace_lidar(pairs, false, false, anything).empty());
+}
+
+/// An error of a few pairs is significant, but other pairs do not show it.
+TEST(LidarEffect, that_few_scans_show_is_one_without_the_rule_of_its_gain) {
+  constexpr unsigned kSeed = 7;
+  std::mt19937 random(kSeed);
+  auto pairs = sixty_pairs([](const Sighting&) { return BeamShift{}; }, random);
+  for (std::size_t k = 0; k < 4; ++k)
+    pairs[k] = seen_with(
+        [](const Sighting& s) {
+          return BeamShift{0.02 * std::cos(s.bearing), 0.0};
+        },
+        0.8, 2.3, random);
+  EXPECT_TRUE(selection::trace_lidar(pairs, false).empty()) << "seed " << kSeed;
+  EXPECT_FALSE(selection::trace_lidar(pairs, false, false, RuleSet().without(Rule::lidar_gain)).empty());
+}
+
+TEST(LidarEffect, that_is_negligible_is_one_without_the_rule_of_its_size) {
+  constexpr unsigned kSeed = 8;
+  std::mt19937 random(kSeed);
+  const auto pairs = sixty_pairs([](const Sighting& s) { return BeamShift{0.0, 3e-4 * s.bearing}; }, random);
+  EXPECT_TRUE(selection::trace_lidar(pairs, false).empty()) << "seed " << kSeed;
+  EXPECT_FALSE(selection::trace_lidar(pairs, false, false, RuleSet().without(Rule::lidar_size)).empty());
+}
+
+/// Where a name that the rest of an error made superfluous stays, it stands beside that rest.
+TEST(LidarEffect, that_stood_in_stays_without_the_rule_of_elimination) {
+  constexpr unsigned kSeed = 6;
+  constexpr double kError = 8e-3;  // rad: a head whose disc is off its centre
+  std::mt19937 random(kSeed);
+  const auto pairs = sixty_pairs(
+      [](const Sighting& s) {
+        return BeamShift{0.0, kError * std::sin(s.bearing)};
+      },
+      random, 3.0);
+  const auto kept = selection::trace_lidar(pairs, false, false, RuleSet().without(Rule::lidar_elimination));
+  const auto usual = selection::trace_lidar(pairs, false);
+  EXPECT_GT(kept.size(), usual.size()) << "seed " << kSeed;
+}
+
 }  // namespace
 }  // namespace odomcalib::calib::terms::lidar_effect_test
