@@ -1,5 +1,6 @@
-// The rules of the search, each with what it protects against, and the set of them that holds. All of them
-// hold but in an ablation, which leaves out one at a time (docs/developer/selection-rules.md).
+// The rules of the search, each with what it protects against, in groups that guard against the same mistake,
+// and the set of them that holds. All of them hold but in an ablation, which leaves out a rule or a group at
+// a time (docs/developer/selection-rules.md).
 #pragma once
 
 #include <bitset>
@@ -61,19 +62,46 @@ enum class Rule : std::size_t {
 };
 inline constexpr std::size_t kRules = static_cast<std::size_t>(Rule::range_gain) + 1;
 
-/// One row of the table.
+/// Mistakes that several rules guard against.
+enum class RuleGroup : std::size_t {
+  chance,
+  held_out,
+  too_small,
+  impossible,
+  wrong_name,
+  second_term,
+  look_alikes,
+  wrong_shape,
+  refused_effect,
+};
+inline constexpr std::size_t kRuleGroups = static_cast<std::size_t>(RuleGroup::refused_effect) + 1;
+
+/// One row of the table of rules.
 struct RuleRow {
   Rule rule;
+  RuleGroup group;
   const char* name;  ///< as `odomcalib-blind --without-rule` takes it
   const char* protects_against;
 };
 
-/// Every rule once, in the order of the enumeration.
-std::span<const RuleRow> rule_table();
-/// nullopt when there is none of that name.
-std::optional<Rule> rule_from(const std::string& name);
+/// One row of the table of groups.
+struct RuleGroupRow {
+  RuleGroup group;
+  const char* name;  ///< as `odomcalib-blind --without-rule` takes it; no rule has the same
+  const char* protects_against;
+};
 
 using RuleBits = std::bitset<kRules>;
+
+/// Every rule once, in the order of the enumeration.
+std::span<const RuleRow> rule_table();
+/// Every group once, in the order of the enumeration.
+std::span<const RuleGroupRow> rule_group_table();
+const char* name_of(RuleGroup group);
+/// The rules of one group.
+RuleBits rules_of(RuleGroup group);
+/// The rule of that name, or all rules of the group of that name; nullopt when there is neither.
+std::optional<RuleBits> rules_named(const std::string& name);
 
 /// The rules that hold. Each is consulted last of what decides, so that one that was never consulted changes
 /// nothing.
@@ -84,8 +112,11 @@ class RuleSet {
     return !left_out_.test(static_cast<std::size_t>(rule));
   }
   [[nodiscard]] RuleSet without(Rule rule) const {
+    return without(RuleBits().set(static_cast<std::size_t>(rule)));
+  }
+  [[nodiscard]] RuleSet without(const RuleBits& rules) const {
     RuleSet fewer = *this;
-    fewer.left_out_.set(static_cast<std::size_t>(rule));
+    fewer.left_out_ |= rules;
     return fewer;
   }
   /// @param consulted outlives the set; not to be shared between threads

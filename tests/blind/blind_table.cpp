@@ -1,6 +1,7 @@
 #include "tests/blind/blind_table.hpp"
 
 #include <algorithm>
+#include <boost/math/distributions/binomial.hpp>
 #include <cmath>
 #include <cstdio>
 #include <map>
@@ -81,7 +82,22 @@ std::string percent(std::size_t part, std::size_t whole) {
   return text;
 }
 
+/// With the exact 95 % interval of the share (Clopper and Pearson, Biometrika 26, 1934).
+std::string percent_with_interval(std::size_t part, std::size_t whole) {
+  if (whole == 0) return percent(part, whole);
+  constexpr double kOneSide = 0.025;
+  using Binomial = boost::math::binomial;
+  const auto trials = static_cast<double>(whole), successes = static_cast<double>(part);
+  char text[64];
+  std::snprintf(text, sizeof text, ", 95 %%: %.2f to %.2f %%",
+                100.0 * Binomial::find_lower_bound_on_p(trials, successes, kOneSide),
+                100.0 * Binomial::find_upper_bound_on_p(trials, successes, kOneSide));
+  return percent(part, whole) + text;
+}
+
+/// A value that nothing gives is a dash.
 std::string number(const char* format, double value) {
+  if (std::isnan(value)) return "–";
   char text[64];
   std::snprintf(text, sizeof text, format, value);
   return text;
@@ -117,6 +133,7 @@ std::size_t count(const std::vector<const Trial*>& trials, Predicate predicate) 
 
 bool has_effect(const Trial& t) { return !t.answer.effects.empty(); }
 bool is_of_the_robot(const Trial& t) { return !belongs_to_the_place(t); }
+bool has_fresh_drive(const Trial& t) { return t.judged == Judged::by_a_fresh_drive; }
 bool worse_by_a_tenth(const Trial& t) { return t.after.position.rms > 1.1 * t.before.position.rms; }
 
 std::string line(const std::string& what, const std::string& result) {
@@ -135,10 +152,11 @@ std::string ratios_line(const std::string& what, const std::vector<const Trial*>
 std::string sigma_line(const std::vector<Trial>& trials, const std::string& what, bool plain) {
   std::size_t within = 0, all = 0;
   for (const Trial& t : trials)
-    for (const double s : plain ? t.plain_sigmas : t.sigmas) {
-      ++all;
-      if (std::abs(s) <= kSigmas) ++within;
-    }
+    if (has_fresh_drive(t) || !plain)
+      for (const double s : plain ? t.plain_sigmas : t.sigmas) {
+        ++all;
+        if (std::abs(s) <= kSigmas) ++within;
+      }
   return line(what, percent(within, all));
 }
 
@@ -147,19 +165,21 @@ std::string summary(const std::vector<Trial>& trials) {
   const auto named = select(trials, {is_of_the_catalogue, is_detectable});
   const auto foreign = select(trials, {is_outside_the_catalogue, is_detectable});
   const auto of_robot = select(trials, {has_effect, is_detectable, is_of_the_robot});
+  const auto driven = select(trials, {has_fresh_drive});
   std::vector<double> seconds;
   seconds.reserve(trials.size());
   for (const Trial& t : trials) seconds.push_back(t.solve_seconds);
   return "| | |\n| --- | --- |\n" + line("recordings", std::to_string(trials.size())) +
          line("catalogue effects that hurt: named, or in the named set",
               percent(count(named, names_every_effect), named.size())) +
-         line("robots without an effect that got one", percent(count(none, claims_anything), none.size())) +
+         line("robots without an effect that got one",
+              percent_with_interval(count(none, claims_anything), none.size())) +
          line("effects outside the catalogue that hurt: flagged with the right variable",
               percent(count(foreign, flags_right_variable), foreign.size())) +
          line("position error on the fresh drive over a tenth above the plain fit's",
-              percent(count(select(trials, {}), worse_by_a_tenth), trials.size())) +
+              percent(count(driven, worse_by_a_tenth), driven.size())) +
          line("position or heading error above the 95 % interval of the plain fit's",
-              percent(count(select(trials, {}), worse_than_plain), trials.size())) +
+              percent(count(driven, worse_than_plain), driven.size())) +
          ratios_line("error over 10 s against the robot without the effect, plain fit", of_robot,
                      ratio_before) +
          ratios_line("the same, after", of_robot, ratio_after) +
@@ -196,8 +216,8 @@ std::string per_kind(const std::vector<Trial>& trials) {
       ++row.hurting;
       if (is_outside_the_catalogue(t) ? flags_right_variable(t) : names_every_effect(t)) ++row.right;
     }
-    row.before.push_back(ratio_before(t));
-    row.after.push_back(ratio_after(t));
+    if (has_fresh_drive(t)) row.before.push_back(ratio_before(t));
+    if (has_fresh_drive(t)) row.after.push_back(ratio_after(t));
     ++row.found[found_text(t)];
   }
   std::string text =
@@ -220,6 +240,36 @@ std::string per_kind(const std::vector<Trial>& trials) {
     text += "|\n";
   }
   return text;
+}
+
+/// One line of the table by campaigns.
+std::string campaign_line(const std::string& name, const std::vector<Trial>& trials) {
+  const auto none = select(trials, {has_no_effect});
+  const auto named = select(trials, {is_of_the_catalogue, is_detectable});
+  const auto foreign = select(trials, {is_outside_the_catalogue, is_detectable});
+  const auto driven = select(trials, {has_fresh_drive});
+  const auto of = [](std::size_t part, std::size_t whole) {
+    return whole == 0 ? "–" : std::to_string(part) + " of " + std::to_string(whole);
+  };
+  std::size_t lengths = 0;
+  for (const Trial& t : trials)
+    lengths += static_cast<std::size_t>(std::count_if(
+        t.sigmas.begin(), t.sigmas.end(), [](double sigma) { return std::abs(sigma) <= kSigmas; }));
+  std::vector<double> errors;
+  for (const Trial* t : select(trials, {has_effect, is_detectable, is_of_the_robot}))
+    errors.push_back(ratio_after(*t));
+  const std::vector<std::string> cells = {
+      name,
+      std::to_string(trials.size()),
+      of(count(named, names_every_effect), named.size()),
+      of(count(foreign, flags_right_variable), foreign.size()),
+      none.empty() ? "–" : percent_with_interval(count(none, claims_anything), none.size()),
+      of(lengths, 3 * trials.size()),
+      of(count(driven, worse_than_plain), driven.size()),
+      number("%.2f", quantile(errors, 0.5)) + ", " + number("%.2f", quantile(errors, 0.9))};
+  std::string text;
+  for (const std::string& cell : cells) text.append("| ").append(cell).append(" ");
+  return text + "|\n";
 }
 
 }  // namespace
@@ -267,6 +317,17 @@ bool belongs_to_the_place(const Trial& trial) {
     return std::any_of(effect.depends_on.begin(), effect.depends_on.end(),
                        [](const std::string& v) { return kPlace.count(v) > 0; });
   });
+}
+
+std::string campaign_table(const std::vector<Trial>& trials) {
+  std::map<std::uint64_t, std::vector<Trial>> campaigns;
+  for (const Trial& t : trials) campaigns[t.answer.campaign].push_back(t);
+  std::string text =
+      "| campaign | recordings | named | flagged | false findings | lengths within 3 | worse | error: "
+      "median, "
+      "90 % below |\n| --- | --- | --- | --- | --- | --- | --- | --- |\n";
+  for (const auto& [campaign, own] : campaigns) text += campaign_line(std::to_string(campaign), own);
+  return text + campaign_line("all", trials);
 }
 
 std::string table(const std::vector<Trial>& trials) { return summary(trials) + "\n" + per_kind(trials); }

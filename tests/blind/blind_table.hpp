@@ -27,6 +27,11 @@ bool flags_right_variable(const Trial& trial);
 /// Effects of the place, the day or the heading are reported but not compensated.
 bool belongs_to_the_place(const Trial& trial);
 
+/// One line for each campaign, and one for all recordings: named, flagged, false findings with their exact
+/// interval, lengths, and the error over that of the robot without the effect.
+std::string campaign_table(const std::vector<Trial>& trials);
+
+/// All recordings, and a line for each kind of effect.
 std::string table(const std::vector<Trial>& trials);
 
 }  // namespace odomcalib::blind

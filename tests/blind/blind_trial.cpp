@@ -131,12 +131,11 @@ void copy_residual(const Calibration& plain, Trial& trial) {
 
 }  // namespace
 
-Examination make_examination(std::uint64_t campaign, unsigned number, const sim::BlindOptions& options) {
-  Examination made{sim::make_blind_case(campaign, number, options),
-                   sim::make_blind_proof(campaign, number, options),
-                   {},
-                   {},
-                   {}};
+Examination make_examination(std::uint64_t campaign, unsigned number, const sim::BlindOptions& options,
+                             Judged judged) {
+  Examination made{sim::make_blind_case(campaign, number, options), judged};
+  if (judged == Judged::by_its_findings) return made;
+  made.proof = sim::make_blind_proof(campaign, number, options);
   made.plain = solve_plain(made.drawn.run.recording);
   made.before = error_on(made.proof.fresh, made.plain);
   made.twin = error_on(made.proof.fresh_twin, solve_plain(made.proof.twin.recording));
@@ -158,8 +157,10 @@ Trial judge(const Examination& examination, const Solution& solution) {
   trial.answer = drawn.answer;
   trial.solve_seconds = solution.seconds;
   copy_findings(found, trial);
-  copy_residual(examination.plain, trial);
   trial.sigmas = sigmas_of(found, drawn.answer.truth);
+  trial.judged = examination.judged;
+  if (trial.judged == Judged::by_its_findings) return trial;
+  copy_residual(examination.plain, trial);
   trial.plain_sigmas = sigmas_of(examination.plain, drawn.answer.truth);
   trial.before = examination.before;
   trial.after = error_on(examination.proof.fresh, found, stamp_correction(found, drawn.run));
@@ -167,9 +168,9 @@ Trial judge(const Examination& examination, const Solution& solution) {
   return trial;
 }
 
-Trial run_trial(std::uint64_t campaign, unsigned number, const sim::BlindOptions& options,
+Trial run_trial(std::uint64_t campaign, unsigned number, const sim::BlindOptions& options, Judged judged,
                 const calib::selection::RuleSet& rules) {
-  const Examination examination = make_examination(campaign, number, options);
+  const Examination examination = make_examination(campaign, number, options, judged);
   return judge(examination, solution_of(examination, rules));
 }
 

@@ -23,12 +23,19 @@ struct DriveError {
   BoundedError heading;
 };
 
+/// Evidence that a calibration is judged by.
+enum class Judged {
+  by_a_fresh_drive,  ///< beside the plain fit and the robot without the effect, too
+  by_its_findings,  ///< and lengths alone: takes a third of the time, and enough of a robot without an effect
+};
+
 struct Trial {
   sim::BlindAnswer answer;
   std::vector<std::string> named;               ///< effects in the calibration
   std::vector<std::string> aliases;             ///< of all of them
   std::vector<std::string> depends_on;          ///< of what stays unexplained
   std::array<double, 3> sigmas{};               ///< left, right diameter, track: (estimate - truth) / std
+  Judged judged = Judged::by_a_fresh_drive;     ///< otherwise what follows, up to the twin, is zero
   std::array<double, 3> plain_sigmas{};         ///< the same of the plain fit
   std::array<double, 3> residual_over_floor{};  ///< plain held-out residual over noise floor: x, y, yaw
   DriveError before;                            ///< fresh drive, plain fit
@@ -41,11 +48,13 @@ struct Trial {
 /// Data by which all solutions of one recording are judged.
 struct Examination {
   sim::BlindCase drawn;
-  sim::BlindProof proof;
-  Calibration plain;  ///< the six base parameters, no effects
-  DriveError before, twin;
+  Judged judged = Judged::by_a_fresh_drive;  ///< by_its_findings: what follows is empty
+  sim::BlindProof proof = {};
+  Calibration plain = {};  ///< the six base parameters, no effects
+  DriveError before = {}, twin = {};
 };
-Examination make_examination(std::uint64_t campaign, unsigned number, const sim::BlindOptions& options);
+Examination make_examination(std::uint64_t campaign, unsigned number, const sim::BlindOptions& options,
+                             Judged judged);
 
 struct Solution {
   Calibration calibration;
@@ -59,7 +68,10 @@ Trial judge(const Examination& examination, const Solution& solution);
 
 /// @param rules all of them but in an ablation
 Trial run_trial(std::uint64_t campaign, unsigned number, const sim::BlindOptions& options,
-                const calib::selection::RuleSet& rules = {});
+                Judged judged = Judged::by_a_fresh_drive, const calib::selection::RuleSet& rules = {});
+
+/// To five significant digits: no table has more.
+double rounded(double value);
 
 /// One line of JSON, and back; rows of several processes are put together before a table is made.
 std::string to_json_line(const Trial& trial);

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""The table of docs/developer/selection-rules.md has the rules of the search, and no others.
+"""The tables of docs/developer/selection-rules.md have the rules of the search and their groups, and no others.
 
 Usage: check_rules.py ODOMCALIB_BLIND DOCUMENT
 """
@@ -10,14 +10,22 @@ import subprocess
 import sys
 
 
+def listed(program, option):
+    text = subprocess.run([program, option], check=True, capture_output=True, text=True).stdout
+    return [tuple(line.split("\t")) for line in text.splitlines()]
+
+
 def main():
-    listed = subprocess.run([sys.argv[1], "--rules"], check=True, capture_output=True, text=True).stdout
-    rules = [tuple(line.split("\t")) for line in listed.splitlines()]
-    rows = re.findall(r"^\| `(\w+)` \| (.+) \|$", pathlib.Path(sys.argv[2]).read_text(encoding="utf-8"), re.MULTILINE)
-    for rule in sorted(set(rules) ^ set(rows)):
-        print(f"{rule[0]}: {'not in the document' if rule in rules else 'no such rule in the program'}, or in other words: {rule[1]}")
-    print(f"{len(rules)} rules, {len(rows)} rows")
-    return 0 if rules and rules == rows else 1
+    text = pathlib.Path(sys.argv[2]).read_text(encoding="utf-8")
+    is_right = True
+    for option, row in (("--rules", r"^\| `(\w+)` \| (\w+) \| (.+) \|$"), ("--rule-groups", r"^\| `(\w+)` \| ([^|]+) \|$")):
+        of_program, of_document = listed(sys.argv[1], option), re.findall(row, text, re.MULTILINE)
+        for line in sorted(set(of_program) ^ set(of_document)):
+            where = "not in the document" if line in of_program else "not in the program"
+            print(f"{line[0]}: {where}, or in other words: {', '.join(line[1:])}")
+        print(f"{option}: {len(of_program)} in the program, {len(of_document)} rows")
+        is_right = is_right and bool(of_program) and of_program == of_document
+    return 0 if is_right else 1
 
 
 if __name__ == "__main__":

@@ -22,6 +22,12 @@ struct Part {
   std::uint64_t campaign = 1;
   unsigned first = 0, count = 10;
   odomcalib::sim::BlindOptions options;
+  bool findings_alone = false;
+
+  [[nodiscard]] odomcalib::blind::Judged judged() const {
+    return findings_alone ? odomcalib::blind::Judged::by_its_findings
+                          : odomcalib::blind::Judged::by_a_fresh_drive;
+  }
 };
 
 void put_line(const std::string& line) {
@@ -29,25 +35,32 @@ void put_line(const std::string& line) {
   std::fflush(stdout);
 }
 
-/// @param without_rule name of a rule of the search; empty: all hold
+/// @param without_rule name of a rule of the search, or of a group; empty: all hold
 int run(const Part& part, const std::string& without_rule) {
   namespace blind = odomcalib::blind;
   const auto rules = blind::rules_without(without_rule);
   for (unsigned number = part.first; number < part.first + part.count; ++number)
-    put_line(blind::to_json_line(blind::run_trial(part.campaign, number, part.options, rules)));
+    put_line(
+        blind::to_json_line(blind::run_trial(part.campaign, number, part.options, part.judged(), rules)));
   return 0;
 }
 
 int print_rules() {
   for (const auto& row : odomcalib::calib::selection::rule_table())
+    std::printf("%s\t%s\t%s\n", row.name, name_of(row.group), row.protects_against);
+  return 0;
+}
+
+int print_rule_groups() {
+  for (const auto& row : odomcalib::calib::selection::rule_group_table())
     std::printf("%s\t%s\n", row.name, row.protects_against);
   return 0;
 }
 
-int run_ablation(const Part& part) {
+int run_ablation(const Part& part, odomcalib::blind::AblationOf of) {
   namespace blind = odomcalib::blind;
   for (unsigned number = part.first; number < part.first + part.count; ++number)
-    for (const blind::Ablation& one : blind::ablate(part.campaign, number, part.options))
+    for (const blind::Ablation& one : blind::ablate(part.campaign, number, part.options, part.judged(), of))
       put_line(blind::to_json_line(one));
   return 0;
 }
@@ -62,12 +75,13 @@ std::vector<Trial> trials_of(const std::vector<std::string>& files) {
   return trials;
 }
 
-int print_table(const std::vector<std::string>& files, const std::vector<std::string>& others) {
+int print_table(const std::vector<std::string>& files, const std::vector<std::string>& others,
+                bool by_campaign) {
   const std::vector<Trial> trials = trials_of(files);
-  std::fputs((others.empty() ? odomcalib::blind::table(trials)
-                             : odomcalib::blind::paired_table(trials, trials_of(others)))
-                 .c_str(),
-             stdout);
+  const std::string text = !others.empty() ? odomcalib::blind::paired_table(trials, trials_of(others))
+                           : by_campaign   ? odomcalib::blind::campaign_table(trials)
+                                           : odomcalib::blind::table(trials);
+  std::fputs(text.c_str(), stdout);
   return trials.empty() ? 1 : 0;
 }
 
@@ -77,23 +91,36 @@ int main(int argc, char** argv) try {
   CLI::App app{"Blind test: recordings with effects that the solver is not told about, scored"};
   Part part;
   std::vector<std::string> files, others;
-  std::string without_rule;
-  bool ablation = false, rules = false;
+  std::string without_rule, ablation_of;
+  bool rules = false, rule_groups = false, by_campaign = false;
   app.add_option("--seed", part.campaign, "of the campaign");
   app.add_option("--first", part.first, "number of the first recording");
   app.add_option("--count", part.count, "number of recordings");
   odomcalib::sim::add_blind_options(app, part.options);
+  app.add_flag("--findings-only", part.findings_alone,
+               "judge what is found, and the lengths: no plain fit, no fresh drive");
   app.add_option("--table", files, "make the table of these files of lines instead");
   app.add_option("--beside", others, "pair them with these files, of the same recordings by another version");
-  // For tests/blind/ablate: an empty group keeps them out of the help.
-  app.add_option("--without-rule", without_rule, "leave out this rule of the search")->group("");
-  app.add_flag("--ablation", ablation, "leave out each rule of the search in turn")->group("");
-  app.add_flag("--rules", rules, "list the rules of the search, each with what it protects against")
+  app.add_flag("--by-campaign", by_campaign, "make a table with a line for each campaign");
+  // For tests/blind/bed: an empty group keeps them out of the help.
+  app.add_option("--without-rule", without_rule, "leave out this rule of the search, or this group")
+      ->group("");
+  app.add_option("--ablation-of", ablation_of, "leave out each rule, or each group of rules, in turn")
+      ->check(CLI::IsMember({"rules", "groups"}))
+      ->group("");
+  app.add_flag("--rules", rules,
+               "list the rules of the search, each with its group and what it protects against")
+      ->group("");
+  app.add_flag("--rule-groups", rule_groups, "list the groups of rules, each with what it protects against")
       ->group("");
   CLI11_PARSE(app, argc, argv);
   if (rules) return print_rules();
-  if (!files.empty()) return print_table(files, others);
-  return ablation ? run_ablation(part) : run(part, without_rule);
+  if (rule_groups) return print_rule_groups();
+  if (!files.empty()) return print_table(files, others, by_campaign);
+  using odomcalib::blind::AblationOf;
+  if (!ablation_of.empty())
+    return run_ablation(part, ablation_of == "groups" ? AblationOf::groups : AblationOf::rules);
+  return run(part, without_rule);
 } catch (const std::exception& error) {
   std::fprintf(stderr, "error: %s\n", error.what());
   return 1;
