@@ -89,10 +89,6 @@ std::optional<FittedSmoothTerm> smooth_from(const SmoothTermEntry& entry) {
   return FittedSmoothTerm{smooth, entry.coefficients, entry.law_of};
 }
 
-// Files of earlier versions do not say what was not to be chosen then.
-static_assert(SmoothTermEntry{}.knots == kKnots && SmoothTermEntry{}.degree == kDegrees &&
-              SmoothTermEntry{}.memory == vehicle::kUsualMemory);
-
 }  // namespace
 
 std::vector<SmoothTermEntry> entries_of(const std::vector<FittedSmoothTerm>& smooths) {

@@ -279,7 +279,11 @@ TEST(SmoothTerm, survives_the_calibration_file) {
   EXPECT_EQ(read[0].smooth, smooth);
   EXPECT_EQ(read[0].coefficients, (std::vector<double>{0.01, -0.02}));
   EXPECT_EQ(read[0].named_term, "drift_with_time");
+  // Files of earlier versions do not say what could not be chosen then.
   SmoothTermEntry of_a_newer_program;
+  EXPECT_EQ(of_a_newer_program.knots, kKnots);
+  EXPECT_EQ(of_a_newer_program.degree, kDegrees);
+  EXPECT_EQ(of_a_newer_program.memory, vehicle::kUsualMemory);
   of_a_newer_program.variable = "mood";
   of_a_newer_program.carrier = "track";
   of_a_newer_program.high = 1.0;

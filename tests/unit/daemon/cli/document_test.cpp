@@ -25,6 +25,7 @@ namespace odomcalib::cli::document_test {
 namespace {
 
 using ::testing::ContainsRegex;
+using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::Not;
 
@@ -226,6 +227,13 @@ TEST(Certificate, has_what_is_filed) {
                            "no load", "true to (tape)", "0.355", "1.002 m by a tape", "+-0.2 %",
                            "A metre read 20.4 mm too long, now 1.1 mm off", "20.40 (20.00..21.00)"})
     EXPECT_THAT(page, HasSubstr(said));
+}
+
+TEST(Report, shows_figures_that_have_a_label_in_the_units_of_people) {
+  const Section section = further_figures_section({{"span of headings", 6.1, "rad"}, {"creep", 0.0015, "m"}});
+  EXPECT_THAT(section.table.rows,
+              ElementsAre(ElementsAre("span of headings", "350", "deg"), ElementsAre("creep", "1.5", "mm")));
+  EXPECT_TRUE(further_figures_section({}).table.head.empty()) << "nothing to say";
 }
 
 TEST(Report, page_is_self_contained_and_escaped) {
