@@ -2,6 +2,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "drivers/base/profile/profile.hpp"
 #include "drivers/base/profile/profile_reader.hpp"
 #include "proto/base_quantities.hpp"
 
