@@ -115,6 +115,7 @@ MethodResult linear_method(std::span<const wheels::WheelMotion> samples,
 
 std::vector<std::string> base_quantity_names() {
   std::vector<std::string> names;
+  names.reserve(kBaseQuantities.size());
   for (const BaseQuantityRow& row : kBaseQuantities) names.emplace_back(row.name);
   return names;
 }

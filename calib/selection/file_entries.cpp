@@ -40,6 +40,7 @@ std::string change_of_track(const std::vector<double>& c) {
 
 std::vector<ConsideredTerm> entries_of(const std::vector<Considered>& considered) {
   std::vector<ConsideredTerm> entries;
+  entries.reserve(considered.size());
   for (const Considered& c : considered)
     entries.push_back({c.name, c.statistic, c.family_p_value, c.outcome});
   return entries;

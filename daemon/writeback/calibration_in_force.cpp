@@ -2,6 +2,7 @@
 
 #include <vector>
 
+#include "proto/calibration/report_data.hpp"
 #include "proto/file_bytes.hpp"
 
 namespace odomcalib {
@@ -13,6 +14,9 @@ constexpr const char* kNone = "none";
 
 std::string text_in_force(Calibration calibration) {
   calibration.picture.reset();
+  // Nobody needs to understand a picture to leave it out.
+  if (const auto whole = calibration.unknown.find(""); whole != calibration.unknown.end())
+    whole->second.erase(kPictureMember);
   return to_json(calibration);
 }
 
