@@ -84,7 +84,7 @@ std::vector<TrendAxis> axes_of(const std::vector<const Calibration*>& calibratio
   if (by_date) date.zero = std::floor(middle_of(*calibrations.front()->driven) / kDay_s) * kDay_s;
   for (const Calibration* one : calibrations) {
     if (by_date) date.x.push_back((middle_of(*one->driven) - date.zero) / kDay_s);
-    if (const auto counted = odometer_of(*one)) distance.x.push_back(*counted);
+    if (const auto counted = one->odometer) distance.x.push_back(*counted);
     number.x.push_back(static_cast<double>(number.x.size() + 1));
   }
   std::vector<TrendAxis> axes;
@@ -152,8 +152,6 @@ Result<double> error_of_metre_from_text(const std::string& text) {
 }
 
 std::string file_name(const std::string& path) { return std::filesystem::path(path).filename().string(); }
-
-std::optional<double> odometer_of(const Calibration& calibration) { return calibration.odometer; }
 
 Result<std::vector<ComparedRobot>> compare(std::vector<ComparedFile> files,
                                            const ComparisonOptions& options) {

@@ -59,9 +59,6 @@ std::string file_name(const std::string& path);
 /// "5mm/m" or "0.5%", as m in a metre. Error: usage.
 Result<double> error_of_metre_from_text(const std::string& text);
 
-/// Reading of the robot's own odometer, m; nullopt where the file has none.
-std::optional<double> odometer_of(const Calibration& calibration);
-
 /// Groups in the order of how urgent they are.
 /// Errors: usage (files of two robots without by_robot; a single file, or two of one recording, without
 /// by_robot), refused (of a robot that was named alone fewer than two were not refused).

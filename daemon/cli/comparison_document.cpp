@@ -436,7 +436,7 @@ std::string to_csv(const std::vector<ComparedRobot>& robots) {
   for (const ComparedRobot& robot : robots)
     for (std::size_t k = 0; k < robot.usable.size(); ++k) {
       const ComparedFile& file = robot.usable_file(k);
-      const auto odometer = odometer_of(file.calibration);
+      const auto& odometer = file.calibration.odometer;
       const std::string of =
           fmt::format("{},{},{},{},{}", text(robot.robot_id), text(file.path),
                       file.calibration.driven ? utc_text(file.calibration.driven->begin) : "",

@@ -66,7 +66,7 @@ ordered_json object_of(const ComparedFile& file) {
       {"left_out", file.left_out.empty() ? ordered_json(nullptr) : ordered_json(file.left_out)}};
   if (const auto& driven = calibration.driven)
     out["driven"] = {{"begin", utc_text(driven->begin)}, {"end", utc_text(driven->end)}};
-  if (const auto odometer = odometer_of(calibration)) out["odometer"] = finite_or_null(*odometer);
+  if (const auto odometer = calibration.odometer) out["odometer"] = finite_or_null(*odometer);
   ordered_json parameters = ordered_json::object();
   for (const auto& [name, quantity] : calibration.parameters)
     parameters[name] = {{"value", finite_or_null(quantity.value)},
