@@ -12,6 +12,7 @@
 #include <cstring>
 #include <memory>
 #include <system_error>
+#include <utility>
 
 namespace odomcalib {
 namespace {
@@ -60,30 +61,57 @@ Result<void> write_new_file(const std::filesystem::path& path, int raw_fd, std::
 
 }  // namespace
 
-Result<std::string> read_file_bytes(const std::filesystem::path& path) {
+Result<void> read_file_pieces(const std::filesystem::path& path, const TakePiece& take) {
   const Descriptor fd(::open(path.c_str(), O_RDONLY | O_CLOEXEC));
   if (fd.get() < 0) return io_error("cannot open", path, "check the name and the permissions");
   struct stat info {};
   if (::fstat(fd.get(), &info) != 0) return io_error("cannot read", path);
   if (S_ISDIR(info.st_mode)) return Error{ErrorCode::io, "is a folder", path.string(), "name a file"};
-  std::string bytes;
-  bytes.reserve(static_cast<std::size_t>(std::max<off_t>(info.st_size, 0)) + 1);
   std::array<char, 1 << 16> chunk{};
+  std::size_t all = 0, held = 0;  // a FIFO may give a byte at a time
   for (;;) {
-    const ssize_t got = ::read(fd.get(), chunk.data(), chunk.size());
+    const ssize_t got = ::read(fd.get(), chunk.data() + held, chunk.size() - held);
     if (got < 0 && errno == EINTR) continue;
     if (got < 0) return io_error("cannot read", path);
-    if (got == 0) return bytes;
-    bytes.append(chunk.data(), static_cast<std::size_t>(got));
-    if (bytes.size() > kLargestFile)
-      return Error{ErrorCode::io, "is larger than 4 GiB", path.string(), "split it"};
+    held += static_cast<std::size_t>(got);
+    all += static_cast<std::size_t>(got);
+    if (all > kLargestFile) return Error{ErrorCode::io, "is larger than 4 GiB", path.string(), "split it"};
+    if (held >= 2 || (got == 0 && held > 0)) take({chunk.data(), std::exchange(held, 0)});
+    if (got == 0) return {};
   }
 }
 
-std::string sha256_hex(std::string_view bytes) {
+Result<std::string> read_file_bytes(const std::filesystem::path& path) {
+  std::error_code unknown;
+  const auto size = std::filesystem::file_size(path, unknown);
+  std::string bytes;
+  if (!unknown) bytes.reserve(std::min<std::size_t>(size, kLargestFile) + 1);
+  const auto read = read_file_pieces(path, [&](std::string_view piece) { bytes.append(piece); });
+  if (!read) return read.error();
+  return bytes;
+}
+
+struct Sha256::Context {
+  EVP_MD_CTX* state = EVP_MD_CTX_new();
+  bool good = state != nullptr && EVP_DigestInit_ex(state, EVP_sha256(), nullptr) == 1;
+  Context() = default;
+  ~Context() { EVP_MD_CTX_free(state); }
+  Context(const Context&) = delete;
+  Context& operator=(const Context&) = delete;
+};
+
+Sha256::Sha256() : context_(std::make_unique<Context>()) {}
+
+Sha256::~Sha256() = default;
+
+void Sha256::take(std::string_view piece) {
+  context_->good = context_->good && EVP_DigestUpdate(context_->state, piece.data(), piece.size()) == 1;
+}
+
+std::string Sha256::hex() {
   std::array<unsigned char, EVP_MAX_MD_SIZE> digest{};
   unsigned int length = 0;
-  if (EVP_Digest(bytes.data(), bytes.size(), digest.data(), &length, EVP_sha256(), nullptr) != 1) return {};
+  if (!context_->good || EVP_DigestFinal_ex(context_->state, digest.data(), &length) != 1) return {};
   static constexpr std::string_view kDigits = "0123456789abcdef";
   std::string hex;
   for (unsigned int i = 0; i < length; ++i) {
@@ -93,52 +121,99 @@ std::string sha256_hex(std::string_view bytes) {
   return hex;
 }
 
+std::string sha256_hex(std::string_view bytes) {
+  Sha256 hash;
+  hash.take(bytes);
+  return hash.hex();
+}
+
 bool is_gzip(std::string_view bytes) { return bytes.size() >= 2 && bytes[0] == '\x1f' && bytes[1] == '\x8b'; }
 
-namespace {
+struct Gunzip::Stream {
+  z_stream zlib{};
+  bool good = inflateInit2(&zlib, 16 + MAX_WBITS) == Z_OK;
+  Stream() = default;
+  ~Stream() { inflateEnd(&zlib); }
+  Stream(const Stream&) = delete;
+  Stream& operator=(const Stream&) = delete;
+};
 
-/// Inflates from `stream` until its member ends, input ends, or the data is damaged; returns zlib's last
-/// code.
-int inflate_member(z_stream& stream, std::string& out, std::size_t limit) {
+Gunzip::Gunzip(std::size_t most, TakePiece take) : most_(most), take_(std::move(take)) {}
+
+Gunzip::~Gunzip() = default;
+
+void Gunzip::fail(const char* problem) {
+  result_.whole = false;
+  result_.problem = problem;
+  stream_.reset();
+}
+
+void Gunzip::begin_member() {
+  stream_ = std::make_unique<Stream>();
+  if (!stream_->good) return fail("cannot start unpacking");
+  inflate_member(std::exchange(between_, {}));
+}
+
+/// @return what follows the member
+std::string_view Gunzip::inflate_member(std::string_view packed) {
+  z_stream& zlib = stream_->zlib;
+  // zlib never writes through next_in. Files are limited to 4 GiB, avail_in holds one byte less.
+  zlib.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(packed.data()));  // NOLINT
+  const auto fed = static_cast<uInt>(std::min<std::size_t>(packed.size(), UINT32_MAX));
+  zlib.avail_in = fed;
   std::array<char, 1 << 16> chunk{};
   int code = Z_OK;
-  while (code == Z_OK && out.size() < limit) {
-    stream.next_out = reinterpret_cast<Bytef*>(chunk.data());
-    stream.avail_out = static_cast<uInt>(chunk.size());
-    code = inflate(&stream, Z_NO_FLUSH);
-    out.append(chunk.data(), chunk.size() - stream.avail_out);
+  while (code == Z_OK) {
+    zlib.next_out = reinterpret_cast<Bytef*>(chunk.data());
+    zlib.avail_out = static_cast<uInt>(chunk.size());
+    code = inflate(&zlib, Z_NO_FLUSH);
+    const std::string_view piece(chunk.data(), chunk.size() - zlib.avail_out);
+    unpacked_ += piece.size();
+    if (!piece.empty()) take_(piece);
+    if (unpacked_ > most_) {
+      fail("unpacks to more than the limit");
+      result_.over_limit = true;
+      return {};
+    }
   }
-  return code;
+  packed.remove_prefix(fed - zlib.avail_in);
+  if (code == Z_STREAM_END)
+    stream_.reset();
+  else if (code != Z_BUF_ERROR)  // which says that more has to come
+    fail("compressed data is damaged");
+  return packed;
 }
 
-std::string describe_inflate(int code) {
-  return code == Z_BUF_ERROR ? "compressed data is cut off" : "compressed data is damaged";
+void Gunzip::feed(std::string_view packed) {
+  while (!packed.empty() && result_.whole) {
+    if (stream_) {
+      packed = inflate_member(packed);
+      continue;
+    }
+    const std::string_view wanted = packed.substr(0, 2 - between_.size());
+    between_.append(wanted);
+    packed.remove_prefix(wanted.size());
+    if (is_gzip(between_)) begin_member();
+    if (stream_ || between_.size() < 2) continue;
+    more_than_zeros_ |= packed.find_first_not_of('\0') != std::string_view::npos;
+    return;
+  }
 }
 
-}  // namespace
+Unpacked Gunzip::finish() {
+  if (stream_)
+    fail("compressed data is cut off");
+  else if (result_.whole && (more_than_zeros_ || between_.find_first_not_of('\0') != std::string::npos))
+    fail("bytes after the compressed data");
+  return std::move(result_);
+}
 
 Unpacked gunzip(std::string_view packed, const UnpackLimit& limit) {
-  Unpacked result;
-  const std::size_t most = limit.of(packed.size());
-  while (is_gzip(packed)) {
-    z_stream stream{};
-    if (inflateInit2(&stream, 16 + MAX_WBITS) != Z_OK) return {{}, false, "cannot start unpacking"};
-    // zlib never writes through next_in. Files are limited to 4 GiB, avail_in holds one byte less.
-    stream.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(packed.data()));  // NOLINT
-    stream.avail_in = static_cast<uInt>(std::min<std::size_t>(packed.size(), UINT32_MAX));
-    const int code = inflate_member(stream, result.bytes, most);
-    packed.remove_prefix(packed.size() - stream.avail_in);
-    inflateEnd(&stream);
-    result.over_limit = result.bytes.size() > most || (code == Z_OK && result.bytes.size() == most);
-    if (code == Z_STREAM_END && !result.over_limit) continue;
-    result.whole = false;
-    result.problem = result.over_limit ? "unpacks to more than the limit" : describe_inflate(code);
-    return result;
-  }
-  if (!packed.empty() && packed.find_first_not_of('\0') != std::string_view::npos) {
-    result.whole = false;
-    result.problem = "bytes after the compressed data";
-  }
+  std::string bytes;
+  Gunzip unpacking(limit.of(packed.size()), [&](std::string_view piece) { bytes.append(piece); });
+  unpacking.feed(packed);
+  Unpacked result = unpacking.finish();
+  result.bytes = std::move(bytes);
   return result;
 }
 

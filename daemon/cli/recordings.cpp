@@ -84,7 +84,7 @@ void add_reading_options(CLI::App& verb, RecordingOptions& options) {
 }
 
 Result<std::vector<Recording>> read_recordings(const std::vector<std::string>& paths,
-                                               const RecordingOptions& options) {
+                                               const RecordingOptions& options, Intensities intensities) {
   const auto topics = topic_choices_of(options);
   if (!topics) return topics.error();
   const auto robot = robot_of(options);
@@ -93,7 +93,8 @@ Result<std::vector<Recording>> read_recordings(const std::vector<std::string>& p
   for (const auto& path : paths) {
     auto recording = [&] {
       const Meanwhile shown("reading " + path);
-      return read_recording(path, &robot.value(), topics.value(), unpack_limit_of(options.unpack_limit));
+      return read_recording(path, &robot.value(), topics.value(), unpack_limit_of(options.unpack_limit),
+                            intensities);
     }();
     if (!recording) {
       for (const auto& remark : recording.error().remarks) tell(fmt::format("{}: {}", path, remark));

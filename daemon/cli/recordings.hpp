@@ -38,6 +38,6 @@ Recording with_nominal(Recording recording, RobotDescription robot);
 
 /// Where a file holds several of a kind, the one taken is named on standard error, a line each.
 Result<std::vector<Recording>> read_recordings(const std::vector<std::string>& paths,
-                                               const RecordingOptions& options);
+                                               const RecordingOptions& options, Intensities intensities);
 
 }  // namespace odomcalib::cli

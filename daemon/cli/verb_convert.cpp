@@ -51,7 +51,7 @@ int convert_recording(const ConvertOptions& options, const Session& session) {
                                                                   {"--robot", options.reading.robot_file}});
       !files)
     return report_error(files.error(), session.json);
-  const auto recordings = read_recordings({options.recording}, options.reading);
+  const auto recordings = read_recordings({options.recording}, options.reading, Intensities::kept);
   if (!recordings) return report_error(recordings.error(), session.json);
   const Recording& recording = recordings.value().front();
   if (!recording.increments.empty())

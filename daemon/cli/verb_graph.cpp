@@ -104,7 +104,7 @@ int build(const BuildOptions& options, const Session& session) {
                         {{"the recording", options.recording}, {"--robot", options.reading.robot_file}});
       !files)
     return report_error(files.error(), session.json);
-  const auto recordings = read_recordings({options.recording}, options.reading);
+  const auto recordings = read_recordings({options.recording}, options.reading, Intensities::left_out);
   if (!recordings) return report_error(recordings.error(), session.json);
   const auto map = [&] {
     const Meanwhile shown("matching scans and closing loops");

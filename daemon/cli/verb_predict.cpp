@@ -80,7 +80,7 @@ std::string to_tum(const std::vector<PoseSample>& poses) {
 }
 
 Result<Predicted> predicted(const PredictOptions& options) {
-  const auto recordings = read_recordings({options.recording}, options.reading);
+  const auto recordings = read_recordings({options.recording}, options.reading, Intensities::left_out);
   if (!recordings) return recordings.error();
   const Recording& recording = recordings.value().front();
   if (recording.ticks.empty())

@@ -101,11 +101,10 @@ int solve_recordings(const SolveArguments& options, const Session& session) {
     if (!scale) return report_error(scale.error(), session.json);
     how.scale = scale.value();
   }
-  auto recordings = read_recordings(options.recordings, options.reading);
+  auto recordings = read_recordings(options.recordings, options.reading, Intensities::left_out);
   if (!recordings) return report_unreadable(recordings.error(), options.recordings, session.json);
   if (const auto wrong = wrong_sensor(options, recordings.value())) return report_error(*wrong, session.json);
   how.sensor = options.sensor;
-  for (Recording& recording : recordings.value()) recording = without_intensities(std::move(recording));
   ProgressLine line;
   const auto progress = [&line](const std::string& phase, double fraction) { line.show(phase, fraction); };
   calib::Solution solution = calib::solve_with_pairs(recordings.value(), how, progress);

@@ -48,9 +48,9 @@ Result<Calibration> read_and_solve(const std::vector<std::filesystem::path>& pat
                                    const Calibrator::Progress& progress) {
   std::vector<Recording> recordings;
   for (const auto& path : paths) {
-    auto recording = read_recording(path);
+    auto recording = read_recording(path, nullptr, {}, {}, Intensities::left_out);
     if (!recording) return recording.error();
-    recordings.push_back(without_intensities(std::move(recording).value()));
+    recordings.push_back(std::move(recording).value());
   }
   return calib::solve(recordings, {.effects = effects}, progress);
 }

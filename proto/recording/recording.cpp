@@ -1,5 +1,8 @@
 #include "proto/recording/recording.hpp"
 
+#include <optional>
+#include <utility>
+
 #include "proto/file_bytes.hpp"
 #include "proto/recording/left_out.hpp"
 #include "proto/recording/overview.hpp"
@@ -89,70 +92,121 @@ std::optional<Error> read_ros(std::string_view bytes, const std::string& where, 
   return error ? error : ros::fill(builder, collector, topics, where);
 }
 
-Result<Recording> read_content(std::string_view bytes, const std::string& where, RecordingBuilder builder,
-                               const RobotDescription* fallback, const TopicChoices& topics,
-                               const UnpackLimit& limit, Overview& overview) {
-  using Need = RecordingBuilder::RobotNeed;
-  Need need = Need::required;
-  const Form form = recognise(bytes);
-  overview.form = name_of(form, bytes);
-  if (form != Form::ros && !topics.empty()) return has_no_topics(where);
-  switch (form) {
-    case Form::ros:
-      if (auto error = read_ros(bytes, where, topics, builder, limit, overview)) return *error;
-      break;
-    case Form::nothing:
-      return Error{ErrorCode::empty, "holds no data", where, "record again"};
-    case Form::calibration:
-      return Error{ErrorCode::format, "is a calibration, not a recording", where,
-                   "odomcalibctl report shows it; solve the recording that it was made from"};
-    case Form::pose_graph:
-      return Error{ErrorCode::format, "is a pose graph, not a recording", where,
-                   "use \"odomcalibctl graph\""};
-    case Form::unknown:
-      return unknown_form(where);
-    case Form::jsonl:
-      read_jsonl(bytes, builder);
-      break;
-    case Form::event_log:
-      read_event_log(bytes, builder);
-      break;
-    case Form::carmen:
-      read_carmen(bytes, fallback, builder);
-      break;
-    case Form::tuples:
-      // Wheel motion is in rad already: what is estimated from it is absolute and needs no nominal values.
-      read_tuples(bytes, builder);
-      need = Need::optional;
-      break;
+/// What the caller of a reader wants.
+struct Wanted {
+  const RobotDescription* fallback;
+  const TopicChoices& topics;
+  const UnpackLimit& limit;
+  Intensities intensities = Intensities::kept;
+};
+
+/// One file that comes in pieces, packed or not. JSON Lines are read as they come: their text is several
+/// times the recording. Of other forms all bytes are kept until the last one is there.
+class FileContent {
+ public:
+  /// @param size of the file, bytes
+  /// @param overview outlives it
+  FileContent(std::filesystem::path name, std::size_t size, const Wanted& wanted, Overview& overview)
+      : name_(std::move(name)),
+        size_(size),
+        wanted_(wanted),
+        overview_(overview),
+        builder_(wanted.intensities) {}
+
+  void take(std::string_view piece) {
+    hash_.take(piece);
+    if (first_ && is_gzip(piece))
+      unpacking_.emplace(wanted_.limit.of(size_),
+                         [this](std::string_view unpacked) { take_unpacked(unpacked); });
+    else if (first_)
+      bytes_.reserve(size_);
+    first_ = false;
+    if (unpacking_)
+      unpacking_->feed(piece);
+    else
+      take_unpacked(piece);
   }
-  return std::move(builder).finish(where, fallback, need);
-}
+
+  Result<Recording> finish() && {
+    const Unpacked unpacked = unpacking_ ? unpacking_->finish() : Unpacked{};
+    if (unpacked.over_limit) return wanted_.limit.refusal(size_, name_.string());
+    if (!unpacked.whole) builder_.discard("file", unpacked.problem);
+    auto recording = finished();
+    if (!recording) return recording;
+    recording.value().name = name_.filename().string();
+    recording.value().sha256 = hash_.hex();
+    tell_where_it_ends(recording.value());
+    return recording;
+  }
+
+ private:
+  void take_unpacked(std::string_view piece) {
+    if (lines_) return lines_->take(piece);
+    const bool was_told = bytes_.size() >= kRecognised_bytes;
+    bytes_.append(piece);
+    if (was_told || bytes_.size() < kRecognised_bytes || recognise(bytes_) != Form::jsonl) return;
+    lines_.emplace(builder_).take(bytes_);
+    std::string().swap(bytes_);
+  }
+
+  Result<Recording> finished() {
+    using Need = RecordingBuilder::RobotNeed;
+    Need need = Need::required;
+    const std::string where = name_.string();
+    const Form form = lines_ ? Form::jsonl : recognise(bytes_);
+    overview_.form = name_of(form, bytes_);
+    if (form != Form::ros && !wanted_.topics.empty()) return has_no_topics(where);
+    switch (form) {
+      case Form::ros:
+        if (auto error = read_ros(bytes_, where, wanted_.topics, builder_, wanted_.limit, overview_))
+          return *error;
+        break;
+      case Form::nothing:
+        return Error{ErrorCode::empty, "holds no data", where, "record again"};
+      case Form::calibration:
+        return Error{ErrorCode::format, "is a calibration, not a recording", where,
+                     "odomcalibctl report shows it; solve the recording that it was made from"};
+      case Form::pose_graph:
+        return Error{ErrorCode::format, "is a pose graph, not a recording", where,
+                     "use \"odomcalibctl graph\""};
+      case Form::unknown:
+        return unknown_form(where);
+      case Form::jsonl:
+        if (!lines_) lines_.emplace(builder_).take(bytes_);
+        lines_->finish();
+        break;
+      case Form::event_log:
+        read_event_log(bytes_, builder_);
+        break;
+      case Form::carmen:
+        read_carmen(bytes_, wanted_.fallback, builder_);
+        break;
+      case Form::tuples:
+        // Wheel motion is in rad already: what is estimated from it is absolute and needs no nominal values.
+        read_tuples(bytes_, builder_);
+        need = Need::optional;
+        break;
+    }
+    return std::move(builder_).finish(where, wanted_.fallback, need);
+  }
+
+  std::filesystem::path name_;
+  std::size_t size_;
+  Wanted wanted_;
+  Overview& overview_;
+  RecordingBuilder builder_;
+  Sha256 hash_;
+  bool first_ = true;
+  std::optional<Gunzip> unpacking_;
+  std::string bytes_;  ///< unpacked
+  std::optional<JsonLines> lines_;
+};
 
 Error not_understood(const std::string& text) {
   return {ErrorCode::usage, "\"" + text + "\" is no choice of a topic", "--topic",
           "write PART=TOPIC, wheels=TOPIC:LEFT,RIGHT or wheels=LEFT_TOPIC,RIGHT_TOPIC; parts are scan, "
           "wheels, wheel_speeds, odometry, gyro and "
           "pose"};
-}
-
-/// Reads the content of the whole file, packed or not.
-Result<Recording> read_file_content(const std::string& bytes, const std::filesystem::path& name,
-                                    const RobotDescription* fallback, const TopicChoices& topics,
-                                    const UnpackLimit& limit, Overview& overview) {
-  RecordingBuilder builder;
-  Unpacked unpacked;
-  const bool packed = is_gzip(bytes);
-  if (packed) unpacked = gunzip(bytes, limit);
-  if (unpacked.over_limit) return limit.refusal(bytes.size(), name.string());
-  if (!unpacked.whole) builder.discard("file", unpacked.problem);
-  auto recording = read_content(packed ? unpacked.bytes : bytes, name.string(), std::move(builder), fallback,
-                                topics, limit, overview);
-  if (!recording) return recording;
-  recording.value().name = name.filename().string();
-  recording.value().sha256 = sha256_hex(bytes);
-  tell_where_it_ends(recording.value());
-  return recording;
 }
 
 }  // namespace
@@ -205,19 +259,20 @@ Result<Recording> read_recording_bytes(const std::string& bytes, const std::file
                                        const RobotDescription* fallback, const TopicChoices& topics,
                                        const UnpackLimit& limit) {
   Overview unused;
-  return read_file_content(bytes, name, fallback, topics, limit, unused);
+  FileContent content(name, bytes.size(), {fallback, topics, limit}, unused);
+  content.take(bytes);
+  return std::move(content).finish();
 }
 
 namespace {
 
 /// All files of a rosbag2 folder as one recording; its hash is that of the hashes of its files, one a line.
-Result<Recording> read_folder(const std::filesystem::path& folder, const RobotDescription* fallback,
-                              const TopicChoices& topics, const UnpackLimit& limit, Overview& overview) {
+Result<Recording> read_folder(const std::filesystem::path& folder, const Wanted& wanted, Overview& overview) {
   const auto found = ros::files_of(folder);
   if (!found) return found.error();
-  RecordingBuilder builder;
+  RecordingBuilder builder(wanted.intensities);
   for (const auto& name : found.value().missing) builder.discard("file", name + " is missing");
-  ros::Collector collector(ros::kinds_of(topics), limit);
+  ros::Collector collector(ros::kinds_of(wanted.topics), wanted.limit);
   std::string hashes;
   for (const auto& path : found.value().files) {
     const auto file = read_file_bytes(path);
@@ -227,9 +282,9 @@ Result<Recording> read_folder(const std::filesystem::path& folder, const RobotDe
   }
   overview.form = "rosbag2 folder";
   overview.topics = ros::overview_of(collector.topics());
-  if (auto error = ros::fill(builder, collector, topics, folder.string())) return *error;
+  if (auto error = ros::fill(builder, collector, wanted.topics, folder.string())) return *error;
   auto recording =
-      std::move(builder).finish(folder.string(), fallback, RecordingBuilder::RobotNeed::required);
+      std::move(builder).finish(folder.string(), wanted.fallback, RecordingBuilder::RobotNeed::required);
   if (!recording) return recording;
   const auto name = folder.has_filename() ? folder : folder.parent_path();
   recording.value().name = name.filename().string();
@@ -244,22 +299,27 @@ bool has_write_ahead_log(const std::filesystem::path& path) {
   return std::filesystem::file_size(path.string() + "-wal", none) > 0 && !none;
 }
 
-}  // namespace
-
-Result<Recording> read_recording(const std::filesystem::path& path, const RobotDescription* fallback,
-                                 const TopicChoices& topics, const UnpackLimit& limit) {
-  Overview unused;
-  return read_recording_with_overview(path, fallback, topics, limit, unused);
+Result<Recording> read_file(const std::filesystem::path& path, const Wanted& wanted, Overview& overview) {
+  std::error_code none;
+  // A pipe has no size before all of it is there.
+  if (!std::filesystem::is_regular_file(path, none)) {
+    const auto file = read_file_bytes(path);
+    if (!file) return file.error();
+    FileContent content(path, file.value().size(), wanted, overview);
+    content.take(file.value());
+    return std::move(content).finish();
+  }
+  FileContent content(path, std::filesystem::file_size(path, none), wanted, overview);
+  const auto read = read_file_pieces(path, [&](std::string_view piece) { content.take(piece); });
+  if (!read) return read.error();
+  return std::move(content).finish();
 }
 
-Result<Recording> read_recording_with_overview(const std::filesystem::path& path,
-                                               const RobotDescription* fallback, const TopicChoices& topics,
-                                               const UnpackLimit& limit, Overview& overview) {
+/// A file, or a rosbag2 folder.
+Result<Recording> read_any(const std::filesystem::path& path, const Wanted& wanted, Overview& overview) {
   std::error_code none;
-  if (std::filesystem::is_directory(path, none)) return read_folder(path, fallback, topics, limit, overview);
-  const auto file = read_file_bytes(path);
-  if (!file) return file.error();
-  auto recording = read_file_content(file.value(), path, fallback, topics, limit, overview);
+  if (std::filesystem::is_directory(path, none)) return read_folder(path, wanted, overview);
+  auto recording = read_file(path, wanted, overview);
   if (recording && has_write_ahead_log(path))
     recording.value().discarded.push_back(
         {"file", "what lies in its -wal beside it; merge it: sqlite3 FILE 'PRAGMA wal_checkpoint(TRUNCATE)'",
@@ -267,9 +327,19 @@ Result<Recording> read_recording_with_overview(const std::filesystem::path& path
   return recording;
 }
 
-Recording without_intensities(Recording recording) {
-  for (Scan& scan : recording.scans) std::vector<float>().swap(scan.intensities);  // clear() would keep them
-  return recording;
+}  // namespace
+
+Result<Recording> read_recording(const std::filesystem::path& path, const RobotDescription* fallback,
+                                 const TopicChoices& topics, const UnpackLimit& limit,
+                                 Intensities intensities) {
+  Overview unused;
+  return read_any(path, {fallback, topics, limit, intensities}, unused);
+}
+
+Result<Recording> read_recording_with_overview(const std::filesystem::path& path,
+                                               const RobotDescription* fallback, const TopicChoices& topics,
+                                               const UnpackLimit& limit, Overview& overview) {
+  return read_any(path, {fallback, topics, limit}, overview);
 }
 
 }  // namespace odomcalib

@@ -80,6 +80,9 @@ using TopicChoices = std::vector<TopicChoice>;
 /// Reads "PART=TOPIC", "PART=TOPIC:LEFT,RIGHT" or, of wheels, "PART=LEFT_TOPIC,RIGHT_TOPIC". Error: usage.
 Result<TopicChoice> parse_topic_choice(const std::string& text);
 
+/// No calibration reads them; in an hour's recording they take as much memory as the ranges.
+enum class Intensities { kept, left_out };
+
 /// Reads a recording and recognises its form by content: JSON Lines (plain or gzip), native LCM log, LCM log
 /// of the MBot/MaeBot family, ROS bag 2.0, rosbag2 (file or folder), MCAP, Censi's tuple file or raw JSON
 /// log, CARMEN log. Errors: io (cannot open), empty (no usable line), missing_units (no or incomplete robot
@@ -90,7 +93,7 @@ Result<TopicChoice> parse_topic_choice(const std::string& text);
 /// @param topics what to take of a ROS recording; what is unique is taken without
 Result<Recording> read_recording(const std::filesystem::path& path,
                                  const RobotDescription* fallback = nullptr, const TopicChoices& topics = {},
-                                 const UnpackLimit& limit = {});
+                                 const UnpackLimit& limit = {}, Intensities intensities = Intensities::kept);
 
 /// Whether the content, plain or gzip, is a recording of one of the forms: for errors that say what a file
 /// is.
@@ -101,9 +104,6 @@ bool is_recording(std::string_view bytes);
 Result<Recording> read_recording_bytes(const std::string& bytes, const std::filesystem::path& name,
                                        const RobotDescription* fallback = nullptr,
                                        const TopicChoices& topics = {}, const UnpackLimit& limit = {});
-
-/// Without what no calibration reads, in an hour's recording as much memory as the ranges.
-Recording without_intensities(Recording recording);
 
 /// Writes JSON Lines (gzip when the name ends in .gz), as write_output does. Counterpart of read_recording:
 /// numbers survive unchanged, and wheel motion is written as it was recorded.

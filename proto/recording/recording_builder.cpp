@@ -217,6 +217,8 @@ void RecordingBuilder::add_scan(Scan scan) {
   readings_ += scan.ranges.size();
   discard("beam", "not a number", problems.not_a_number);
   discard("beam", kOutsideLimits, problems.out_of_limits);
+  if (intensities_ == Intensities::left_out)
+    std::vector<float>().swap(scan.intensities);  // clear() would keep them
   recording_.scans.push_back(std::move(scan));
 }
 

@@ -18,6 +18,7 @@ namespace odomcalib {
 /// first and the last.
 class RecordingBuilder {
  public:
+  explicit RecordingBuilder(Intensities intensities = Intensities::kept) : intensities_(intensities) {}
   /// The first description stays in force; a later, different one is counted as discarded.
   void add_robot(RobotDescription robot);
   void add_ticks(TickSample sample);
@@ -97,6 +98,7 @@ class RecordingBuilder {
   void make_ticks();
 
   Recording recording_;
+  Intensities intensities_;
   bool have_robot_ = false;
   StreamClock ticks_clock_, wheels_clock_, wheel_speeds_clock_, odometry_clock_, pose_clock_, gyro_clock_;
   std::map<std::string, StreamClock> scan_clocks_;                      // by sensor

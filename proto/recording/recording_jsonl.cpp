@@ -148,19 +148,28 @@ bool is_blank(std::string_view line) { return line.find_first_not_of(" \t\r") ==
 
 }  // namespace
 
-void read_jsonl(std::string_view text, RecordingBuilder& builder) {
-  JsonFields fields;
-  while (!text.empty()) {
-    const std::size_t end = text.find('\n');
-    const bool last = end == std::string_view::npos;
-    const std::string_view line = text.substr(0, end);
-    text.remove_prefix(last ? text.size() : end + 1);
-    if (is_blank(line)) continue;
-    if (parse_fields(line, fields))
-      add_line(fields, builder);
-    else
-      builder.discard("line", last ? "cut off" : "not valid JSON");
-  }
+void JsonLines::read_line(std::string_view line, const char* if_wrong) {
+  if (is_blank(line)) return;
+  if (parse_fields(line, fields_))
+    add_line(fields_, *builder_);
+  else
+    builder_->discard("line", if_wrong);
 }
+
+void JsonLines::take(std::string_view piece) {
+  for (std::size_t end = piece.find('\n'); end != std::string_view::npos; end = piece.find('\n')) {
+    if (begun_.empty()) {
+      read_line(piece.substr(0, end), "not valid JSON");
+    } else {
+      begun_.append(piece.substr(0, end));
+      read_line(begun_, "not valid JSON");
+      begun_.clear();
+    }
+    piece.remove_prefix(end + 1);
+  }
+  begun_.append(piece);
+}
+
+void JsonLines::finish() { read_line(begun_, "cut off"); }
 
 }  // namespace odomcalib

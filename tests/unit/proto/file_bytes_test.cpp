@@ -7,6 +7,7 @@
 #include <sys/sysmacros.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <fstream>
 
 namespace odomcalib::file_bytes_test {
@@ -89,6 +90,65 @@ TEST_F(Output, of_the_program_itself_replaces_a_link) {
   ASSERT_TRUE(replace_file(folder_ / "link", "new").ok());
   EXPECT_FALSE(fs::is_symlink(folder_ / "link"));
   EXPECT_EQ(content(folder_ / "elsewhere" / "file"), "old");
+}
+
+/// Unpacks what comes in pieces of `size` bytes.
+Unpacked gunzip_by(std::size_t size, std::string_view packed, std::size_t most = 1 << 20) {
+  std::string bytes;
+  Gunzip unpacking(most, [&](std::string_view piece) { bytes.append(piece); });
+  for (; !packed.empty(); packed.remove_prefix(std::min(size, packed.size())))
+    unpacking.feed(packed.substr(0, size));
+  Unpacked result = unpacking.finish();
+  result.bytes = bytes;
+  return result;
+}
+
+TEST(Gunzip, gives_the_same_in_whatever_pieces_the_file_comes) {
+  const std::string one = gzip("one\n").value(), two = gzip(std::string(200000, 'x')).value();
+  std::string damaged = two;
+  damaged[damaged.size() - 6] ^= '\x55';  // of the check sum
+  struct Case {
+    std::string packed;
+    std::size_t least;  ///< bytes that can be unpacked
+    std::string problem;
+  };
+  const std::vector<Case> cases{{one, 4, ""},
+                                {one + two, 200004, ""},
+                                {one + two + std::string(1000, '\0'), 200004, ""},
+                                {one + '\0', 4, ""},
+                                {one + std::string(1000, '\0') + 'x', 4, "bytes after the compressed data"},
+                                {one + "x", 4, "bytes after the compressed data"},
+                                {one + two[0], 4, "bytes after the compressed data"},
+                                {one + two.substr(0, 2), 4, "compressed data is cut off"},
+                                {one + two.substr(0, two.size() - 1), 200004, "compressed data is cut off"},
+                                {one + damaged, 4, "compressed data is damaged"}};
+  for (const Case& c : cases)
+    for (const std::size_t size : {1U, 2U, 3U, 7U, 1000U, 1U << 20U}) {
+      SCOPED_TRACE(c.problem + ", pieces of " + std::to_string(size));
+      const Unpacked got = gunzip_by(size, c.packed);
+      EXPECT_GE(got.bytes.size(), c.least);
+      EXPECT_TRUE(got.bytes.starts_with("one\n"));
+      EXPECT_EQ(got.problem, c.problem);
+      EXPECT_EQ(got.whole, c.problem.empty());
+      EXPECT_FALSE(got.over_limit);
+    }
+}
+
+TEST(Gunzip, hands_over_hardly_more_than_the_limit) {
+  const std::string packed = gzip(std::string(10 << 20, 'x')).value();
+  for (const std::size_t size : {100U, 1U << 20U}) {
+    const Unpacked got = gunzip_by(size, packed, 1 << 20);
+    EXPECT_TRUE(got.over_limit);
+    EXPECT_LE(got.bytes.size(), (1U << 20U) + (1U << 16U));
+    EXPECT_FALSE(gunzip_by(size, packed, 10 << 20).over_limit) << "just as much as is allowed";
+  }
+}
+
+TEST(Sha256, of_pieces_is_that_of_the_whole) {
+  // FIPS 180-4, example of one block.
+  Sha256 hash;
+  for (const char* piece : {"a", "", "bc"}) hash.take(piece);
+  EXPECT_EQ(hash.hex(), "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad");
 }
 
 }  // namespace

@@ -1,9 +1,13 @@
 #include "proto/recording/recording.hpp"
 
 #include <gtest/gtest.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <chrono>
+#include <fstream>
 #include <random>
 
 #include "tests/unit/proto/support.hpp"
@@ -60,9 +64,6 @@ TEST(Recording, reads_every_kind_of_line) {
   EXPECT_EQ(scan.angles, (std::vector<float>{1.0F, 0.4F, 0.0F}));
   EXPECT_EQ(scan.times, (std::vector<float>{0.0F, 0.002F, 0.003F}));
   EXPECT_EQ(scan.intensities, (std::vector<float>{9.0F, 0.0F, 7.0F}));
-  const Recording spare = without_intensities(r);
-  EXPECT_EQ(spare.scans.front().intensities.capacity(), 0U);
-  EXPECT_EQ(spare.scans.front().ranges, scan.ranges);
   EXPECT_EQ(scan.sensor, "front");
   ASSERT_EQ(r.poses.size(), 1U);
   EXPECT_EQ(r.poses[0].yaw, -3.0);
@@ -427,6 +428,82 @@ TEST(Recording, of_five_minutes_loads_within_the_time_budget) {
 #if !defined(ODOMCALIB_SANITIZED)
   EXPECT_LT(seconds, 3.0) << "usually about 1 s of processor time; the limit allows for a busy machine";
 #endif
+}
+
+/// Lines that cross the borders of whatever pieces a file is read in.
+std::string long_text(std::size_t lines) {
+  std::string text = kRobotLine;
+  for (std::size_t i = 0; i < lines; ++i)
+    text +=
+        i % 97 == 5 ? std::string("{damaged\n") : ticks_line(0.02 * static_cast<double>(i), 1, 2) + "\r\n";
+  return text + R"({"type":"ticks","t":)";
+}
+
+TEST(Recording, of_a_long_file_is_the_same_in_whatever_pieces_it_comes) {
+  const std::string text = long_text(60000);
+  ASSERT_GT(text.size(), 3U << 20U) << "more than what tells the form";
+  const auto path = test::write_file("long.jsonl", text);
+  const auto packed = test::write_file("long.jsonl.gz", gzip(text).value());
+  const Recording whole = value_of(read_recording_bytes(text, path));
+  for (const auto& file : {path, packed}) {
+    const Recording in_pieces = value_of(read_recording(file));
+    EXPECT_EQ(in_pieces.ticks.size(), whole.ticks.size());
+    EXPECT_EQ(in_pieces.ticks.back().t, whole.ticks.back().t);
+    EXPECT_EQ(list_discarded(in_pieces), list_discarded(whole));
+    EXPECT_EQ(in_pieces.sha256, sha256_hex(read_file_bytes(file).value()));
+    std::filesystem::remove(file);
+  }
+  EXPECT_EQ(whole.ticks.size(), 60000U - 619U);
+  EXPECT_EQ(discarded(whole, "line", "not valid JSON"), 619U);
+  EXPECT_EQ(discarded(whole, "line", "cut off"), 1U);
+}
+
+/// Largest memory of this process so far, MiB.
+long peak_memory() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  return usage.ru_maxrss / 1024;
+}
+
+TEST(Recording, takes_no_memory_for_its_text) {
+#if defined(ODOMCALIB_SANITIZED)
+  GTEST_SKIP() << "sanitizers keep what was freed";
+#endif
+  const auto plain = test::write_file("much_text.jsonl", long_text(1000).substr(0, 50000));
+  std::ofstream text(plain, std::ios::app);
+  for (int i = 0; i < 1 << 16; ++i) text << '\n' << std::string(999, ' ');
+  text.close();
+  const auto packed = test::write_file("much_text.jsonl.gz", gzip(read_file_bytes(plain).value()).value());
+  // What this test has used itself is free again, and would hide what reading takes.
+  const auto peak_of = [](const std::filesystem::path& file) {
+    const pid_t child = fork();
+    if (child == 0) {
+      const long before = peak_memory();
+      const bool read = read_recording(file, nullptr, {}, UnpackLimit::allowed(std::size_t{1} << 30)).ok();
+      _exit(read ? static_cast<int>(std::min(peak_memory() - before, 200L)) : 255);
+    }
+    int status = 0;
+    waitpid(child, &status, 0);
+    return WEXITSTATUS(status);
+  };
+  EXPECT_LT(peak_of(plain), 10) << "MiB, of 62 MiB of text";
+  EXPECT_LT(peak_of(packed), 10) << "MiB";
+  std::filesystem::remove(plain);
+  std::filesystem::remove(packed);
+}
+
+TEST(Recording, keeps_no_intensities_where_nobody_wants_them) {
+  const auto path = test::write_file(
+      "bright.jsonl",
+      std::string(kRobotLine) +
+          R"({"type":"scan","t":1,"angle_min":-1,"angle_increment":0.5,"ranges":[1,2],"intensities":[3,4]})"
+          "\n");
+  const Recording all = value_of(read_recording(path));
+  const Recording spare = value_of(read_recording(path, nullptr, {}, {}, Intensities::left_out));
+  std::filesystem::remove(path);
+  EXPECT_EQ(all.scans.front().intensities, (std::vector<float>{3.0F, 4.0F}));
+  EXPECT_EQ(spare.scans.front().intensities.capacity(), 0U);
+  EXPECT_EQ(spare.scans.front().ranges, all.scans.front().ranges);
 }
 
 }  // namespace
