@@ -85,7 +85,7 @@ Result<Dataset> open_dataset(const ingest::Recordings& recordings) {
   for (const Recording& recording : recordings.view()) {
     auto track = track_of(recording);
     if (!track) return track.error();
-    std::vector<vehicle::StepContext> context = vehicle::make_context(track.value(), dataset.nominal);
+    vehicle::DriveContext context = vehicle::make_context(track.value(), dataset.nominal);
     dataset.models.push_back(
         std::make_shared<const vehicle::DriveModel>(std::move(track).value(), std::move(context)));
   }

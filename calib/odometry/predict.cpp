@@ -19,7 +19,7 @@ std::vector<PoseSample> predict(const Recording& recording, const Calibration& c
   if (track.empty()) return poses;
   const DriveClock clock(calibration, track.t.front());
   DeadReckoning reckoning(correction_of(calibration, clock.is_known()));
-  const std::vector<vehicle::StepContext> context =
+  const vehicle::DriveContext context =
       vehicle::make_context(track, reckoning.base(), covariates_of(reckoning.correction().effects));
   std::size_t k = 0;
   for (std::size_t i = 0; i < recording.ticks.size(); ++i) {

@@ -22,10 +22,10 @@ struct Covariate {
 
 /// 1 when the wheel just turned to forward, -1 to backward, otherwise 0.
 double left_reversal(const vehicle::StepContext& c) {
-  return c.left_lost[settings::kUsualPlay] / vehicle::kPlays[settings::kUsualPlay];
+  return c.lost_to_play().left[settings::kUsualPlay] / vehicle::kPlays[settings::kUsualPlay];
 }
 double right_reversal(const vehicle::StepContext& c) {
-  return c.right_lost[settings::kUsualPlay] / vehicle::kPlays[settings::kUsualPlay];
+  return c.lost_to_play().right[settings::kUsualPlay] / vehicle::kPlays[settings::kUsualPlay];
 }
 
 constexpr std::array kCovariates = {

@@ -46,6 +46,7 @@ class Tried {
   /// Before smooth terms are tried, and after effects: what each channel of each tick interval changes, which
   /// is all that smooth terms need.
   void prepare_smooth_terms() {
+    model_.forget_on_demand();  // no smooth term asks for them, and responses take as much memory
     responses_ = sensitivity_->by_steps({std::make_shared<Defects>()}, std::vector<double>(kChannels, 0.0));
     sensitivity_.reset();
   }

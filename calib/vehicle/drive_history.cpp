@@ -6,6 +6,9 @@
 #include "calib/vehicle/settings.hpp"
 
 namespace odomcalib::calib::vehicle {
+
+double dither_of(double tick_angle) { return settings::kDither * tick_angle; }
+
 double DriveHistory::Wheel::advance(double delta, double dither) {
   if (direction == 0.0) {
     behind += delta;
@@ -63,11 +66,10 @@ void DriveHistory::remember_stop(StepContext& c, const math::Pose& step) {
 }
 
 void DriveHistory::advance_groups(StepContext& c, const math::Pose& step) {
-  if (groups_.contain(CovariateGroup::gear_play)) {
-    c.left_lost = left_gears_.advance(c.left_delta, dither_);
-    c.right_lost = right_gears_.advance(c.right_delta, dither_);
-  }
-  if (groups_.contain(CovariateGroup::caster)) c.caster = casters_.advance(step, base_.track_width);
+  if (groups_.contain(CovariateGroup::gear_play))
+    latest_.lost = {left_gears_.advance(c.left_delta, dither_), right_gears_.advance(c.right_delta, dither_)};
+  if (groups_.contain(CovariateGroup::caster)) latest_.sines = casters_.advance(step, base_.track_width);
+  c.on_demand = &latest_;
   if (groups_.contain(CovariateGroup::tyre_relaxation)) relax_tyres(c, step);
   if (groups_.contain(CovariateGroup::stops)) remember_stop(c, step);
   if (groups_.contain(CovariateGroup::previous_acceleration)) {

@@ -3,20 +3,24 @@
 
 #include "calib/math/se2.hpp"
 #include "calib/vehicle/covariates/covariate_groups.hpp"
+#include "calib/vehicle/covariates/on_demand.hpp"
 #include "calib/vehicle/motion_step.hpp"
 #include "calib/vehicle/settings.hpp"
 #include "calib/wheels/wheel_motion.hpp"
 
 namespace odomcalib::calib::vehicle {
 
+/// Motion of a wheel that is a count to and fro, rad.
+double dither_of(double tick_angle);
+
 /// State accumulated over a drive: pose by the plain model, how far back the last reversals lie, and the
-/// requested groups of covariates.
+/// requested groups of covariates. Contexts refer to it for those on demand.
 class DriveHistory {
  public:
   /// @param tick_angle rad, of one count: a wheel that stands between two may show either
   DriveHistory(const wheels::BaseParameters& base, double tick_angle,
                CovariateGroups groups = CovariateGroups::all())
-      : base_(base), dither_(settings::kDither * tick_angle), groups_(groups) {}
+      : base_(base), dither_(dither_of(tick_angle)), groups_(groups) {}
   /// Fills the fields of `context` that depend on the drive so far, then takes the interval in.
   void advance(StepContext& context);
 
@@ -42,6 +46,13 @@ class DriveHistory {
   double since_reversal_ = settings::kBeforeTheDrive;
   double distance_ = 0.0;
 
+  /// Of the interval that was taken in last.
+  struct Latest final : OnDemand {
+    LostByWheels lost;
+    CasterSines sines{};
+    [[nodiscard]] const LostByWheels& lost_to_play(std::size_t /*interval*/) const override { return lost; }
+    [[nodiscard]] const CasterSines& caster(std::size_t /*interval*/) const override { return sines; }
+  } latest_;
   GearPlay left_gears_, right_gears_;
   Standstill standstill_;
   Winding winding_;

@@ -39,18 +39,18 @@ std::size_t count_parameters(const EffectList& effects) {
   return count;
 }
 
-DriveModel::DriveModel(wheels::WheelTrack track, std::vector<StepContext> context)
+DriveModel::DriveModel(wheels::WheelTrack track, DriveContext context)
     : track_(std::move(track)), context_(std::move(context)) {}
 
 std::span<const StepContext> DriveModel::context_within(const Interval& interval) const {
   const std::size_t first = track_.interval_at(interval.begin);
   const std::size_t last = std::max(first, track_.interval_at(interval.end));
-  return std::span(context_).subspan(first, last - first + 1);
+  return std::span(context_.intervals()).subspan(first, last - first + 1);
 }
 
 DriveModel DriveModel::located(wheels::WheelTrack track, std::span<const Fix> fixes,
                                std::span<const double> parameters, const EffectList& effects) {
-  std::vector<StepContext> context = make_context(track, to_base(parameters));
+  DriveContext context = make_context(track, to_base(parameters));
   DriveModel model(std::move(track), std::move(context));
   const Trajectory path = model.trajectory(parameters, effects);
   math::Pose origin;  // of dead reckoning, in the frame of the fixes

@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "calib/vehicle/drive_context.hpp"
 #include "calib/vehicle/effect.hpp"
 #include "calib/vehicle/motion_step.hpp"
 #include "calib/vehicle/placed_effects.hpp"
@@ -68,10 +69,12 @@ Eigen::Vector3d sensor_velocity(const Trajectory& trajectory, const math::Pose& 
 class DriveModel {
  public:
   /// @param context one per interval between samples of the track (see make_context)
-  DriveModel(wheels::WheelTrack track, std::vector<StepContext> context);
+  DriveModel(wheels::WheelTrack track, DriveContext context);
 
   [[nodiscard]] const wheels::WheelTrack& track() const { return track_; }
-  [[nodiscard]] const std::vector<StepContext>& context() const { return context_; }
+  [[nodiscard]] const std::vector<StepContext>& context() const { return context_.intervals(); }
+  /// Until they are asked for again, covariates on demand take no memory.
+  void forget_on_demand() const { context_.forget_on_demand(); }
   /// Contexts of the tick intervals that a measured motion touches: one at least.
   [[nodiscard]] std::span<const StepContext> context_within(const Interval& interval) const;
 
@@ -90,7 +93,7 @@ class DriveModel {
 
  private:
   wheels::WheelTrack track_;
-  std::vector<StepContext> context_;
+  DriveContext context_;
 };
 
 }  // namespace odomcalib::calib::vehicle

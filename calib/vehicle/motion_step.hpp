@@ -4,10 +4,10 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 
-#include "calib/vehicle/covariates/caster_swing.hpp"
-#include "calib/vehicle/covariates/gear_play.hpp"
 #include "calib/vehicle/covariates/motion_memory.hpp"
+#include "calib/vehicle/covariates/on_demand.hpp"
 #include "calib/vehicle/covariates/standstill.hpp"
 #include "calib/vehicle/covariates/sway.hpp"
 #include "calib/vehicle/covariates/tyre_relaxation.hpp"
@@ -73,8 +73,6 @@ struct alignas(64) StepContext {
   /// kRelaxations: the turn rate, rad/s, and the lateral acceleration, m/s^2. Not smoothed: the tyres do
   /// that.
   Relaxed relaxed_turn_rate{}, relaxed_lateral_acceleration{};
-  /// gear_play: of the wheel's rotation in the interval, what a gear train with each of kPlays loses, rad.
-  LostToPlay left_lost{}, right_lost{};
   /// stops: mean speed of the rims of late, in units of the least that is no standing; and the mean way of
   /// the two rims since the robot last stood still for each of kStops, m.
   double relative_speed = 0.0;
@@ -89,9 +87,19 @@ struct alignas(64) StepContext {
   /// whether the robot was sped up or slowed down lately, as in previous_turn over 0.1 m/s.
   double forward_acceleration = 0.0, peak_acceleration = 0.0;
   AccelerationMemory previous_acceleration{};
+
+  std::uint32_t interval = 0;           ///< which of the drive this is
+  const OnDemand* on_demand = nullptr;  ///< of the drive, outlives the context; without: zero
+
+  /// gear_play: see LostByWheels.
+  [[nodiscard]] const LostByWheels& lost_to_play() const {
+    return on_demand != nullptr ? on_demand->lost_to_play(interval) : kNothingLost;
+  }
   /// caster: sine of the angle by which a caster behind the axle still points past the way its pivot moves,
   /// for each trail and lean, -1 to 1.
-  CasterSines caster{};
+  [[nodiscard]] const CasterSines& caster() const {
+    return on_demand != nullptr ? on_demand->caster(interval) : kNoSwing;
+  }
 
   void face(double yaw) {
     heading = yaw;

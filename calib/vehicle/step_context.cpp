@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <boost/container/small_vector.hpp>
 #include <cmath>
+#include <memory>
+#include <utility>
 
 #include "calib/vehicle/drive_history.hpp"
 #include "calib/vehicle/settings.hpp"
@@ -264,12 +266,14 @@ void fill_past_covariates(StepContext& last, const wheels::WheelTrack& track,
   }
 }
 
-std::vector<StepContext> make_context(const wheels::WheelTrack& track, const wheels::BaseParameters& base,
-                                      CovariateGroups groups) {
+DriveContext make_context(const wheels::WheelTrack& track, const wheels::BaseParameters& base,
+                          CovariateGroups groups) {
   std::vector<StepContext> contexts = make_context_of_moment(track, base, groups);
-  DriveHistory history(base, track.tick_angle, groups);
+  DriveHistory history(base, track.tick_angle,
+                       groups.without({CovariateGroup::gear_play, CovariateGroup::caster}));
   for (StepContext& c : contexts) history.advance(c);
-  return contexts;
+  auto on_demand = std::make_shared<const DriveOnDemand>(contexts, base, dither_of(track.tick_angle), groups);
+  return {std::move(contexts), std::move(on_demand)};
 }
 
 }  // namespace odomcalib::calib::vehicle

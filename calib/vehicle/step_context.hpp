@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "calib/vehicle/covariates/covariate_groups.hpp"
+#include "calib/vehicle/drive_context.hpp"
 #include "calib/vehicle/motion_step.hpp"
 #include "calib/wheels/wheel_motion.hpp"
 #include "calib/wheels/wheel_track.hpp"
@@ -28,7 +29,7 @@ void fill_past_covariates(StepContext& last, const wheels::WheelTrack& track,
                           const wheels::BaseParameters& base, CovariateGroups groups);
 
 /// With what depends on the drive before.
-std::vector<StepContext> make_context(const wheels::WheelTrack& track, const wheels::BaseParameters& base,
-                                      CovariateGroups groups = CovariateGroups::all());
+DriveContext make_context(const wheels::WheelTrack& track, const wheels::BaseParameters& base,
+                          CovariateGroups groups = CovariateGroups::all());
 
 }  // namespace odomcalib::calib::vehicle

@@ -48,8 +48,9 @@ class Backlash final : public StepEffect<Backlash> {
       fade(c.right_since_reversal, c.right_delta, p[1], spread, step.right);
       return;
     }
-    lose(c.left_lost, c.left_delta, p[0], step.left);
-    lose(c.right_lost, c.right_delta, p[1], step.right);
+    const vehicle::LostByWheels& lost = c.lost_to_play();
+    lose(lost.left, c.left_delta, p[0], step.left);
+    lose(lost.right, c.right_delta, p[1], step.right);
   }
 
  private:

@@ -49,7 +49,7 @@ class CasterKick final : public StepEffect<CasterKick> {
   static void act(const vehicle::StepContext& c, std::span<const T> p, vehicle::WheelStep<T>& step) {
     using std::exp;
     if (plain(p[4]) < 0.5) {
-      step.yaw += p[0] * c.caster[nearest_caster(plain(p[3]), plain(p[5]))] * c.way / p[3];
+      step.yaw += p[0] * c.caster()[nearest_caster(plain(p[3]), plain(p[5]))] * c.way / p[3];
       return;
     }
     const T side = p[0] * c.direction + p[1] * c.previous_turn[vehicle::kUsualMemory] + p[2];

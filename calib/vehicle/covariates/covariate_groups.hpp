@@ -36,6 +36,11 @@ class CovariateGroups {
     bits_ |= others.bits_;
     return *this;
   }
+  [[nodiscard]] constexpr CovariateGroups without(CovariateGroups others) const {
+    CovariateGroups groups;
+    groups.bits_ = bits_ & ~others.bits_;
+    return groups;
+  }
   friend constexpr bool operator==(CovariateGroups, CovariateGroups) = default;
 
  private:

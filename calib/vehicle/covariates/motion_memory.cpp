@@ -21,10 +21,9 @@ void PreviousTurn::advance(double yaw) { remember(memory_, yaw); }
 /// Noise of the acceleration at steady speed must not wash the memory out.
 void PreviousAcceleration::advance(double acceleration, double peak, double dt) {
   if (std::abs(acceleration) > kAccelerationThresholds.front())
-    remember(memory_, acceleration * dt / settings::kAccelerationMemory_m_s);
+    remember(memory_.means, acceleration * dt / settings::kAccelerationMemory_m_s);
   for (std::size_t k = 0; k < kAccelerationThresholds.size(); ++k)
-    if (std::abs(peak) > kAccelerationThresholds[k])
-      memory_[kMemorySpans.size() + k] = std::copysign(1.0, peak);
+    if (std::abs(peak) > kAccelerationThresholds[k]) memory_.relays[k] = peak > 0.0 ? 1 : -1;
 }
 
 }  // namespace odomcalib::calib::vehicle

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstddef>
+#include <cstdint>
 
 namespace odomcalib::calib::vehicle {
 
@@ -17,7 +18,15 @@ using Memory = std::array<double, kMemorySpans.size()>;
 inline constexpr std::array<double, 13> kAccelerationThresholds = {0.1,  0.12, 0.145, 0.17, 0.205, 0.25, 0.3,
                                                                    0.36, 0.43, 0.5,   0.6,  0.75,  0.9};
 /// Means as in Memory, then relays.
-using AccelerationMemory = std::array<double, kMemorySpans.size() + kAccelerationThresholds.size()>;
+struct AccelerationMemory {
+  Memory means{};
+  std::array<std::int8_t, kAccelerationThresholds.size()> relays{};  ///< -1, 0 or 1
+
+  [[nodiscard]] static constexpr std::size_t size() {
+    return kMemorySpans.size() + kAccelerationThresholds.size();
+  }
+  double operator[](std::size_t k) const { return k < means.size() ? means[k] : relays[k - means.size()]; }
+};
 
 class PreviousTurn {
  public:

@@ -428,7 +428,7 @@ TEST(Selection, a_wheel_whose_counts_are_older_than_the_others_is_named) {
   for (std::size_t k = 1; k < late.left.size(); ++k)
     late.left[k] -= kLag / (late.t[k] - late.t[k - 1]) * (model.track().left[k] - model.track().left[k - 1]);
   auto context = vehicle::make_context_of_moment(late, kBase);
-  const vehicle::DriveModel seen(std::move(late), std::move(context));
+  const vehicle::DriveModel seen(std::move(late), {std::move(context), nullptr});
   measurement::FitData data = measured(model, {}, {});
   data.model = &seen;
   const auto fit =

@@ -17,7 +17,7 @@ namespace {
 
 using vehicle::StepContext;
 
-std::vector<double> steps_of(const vehicle::Effect& effect, const std::vector<StepContext>& contexts) {
+std::vector<double> steps_of(const vehicle::Effect& effect, std::span<const StepContext> contexts) {
   std::vector<double> parameters;
   for (const vehicle::EffectParameter& p : effect.parameters())
     parameters.push_back(p.is_size() ? 0.7 * p.scale : p.start);
@@ -57,8 +57,8 @@ TEST(Covariates, of_a_term_are_those_that_it_states) {
       stated = make_context(model.track(), selection::kBase, term->covariates());
     groups = term->covariates();
     const auto steps = steps_of(*term, model.context());
-    EXPECT_EQ(steps_of(*term, stated), steps) << term->name();
-    with_groups += steps_of(*term, none) != steps ? 1 : 0;
+    EXPECT_EQ(steps_of(*term, stated.intervals()), steps) << term->name();
+    with_groups += steps_of(*term, none.intervals()) != steps ? 1 : 0;
   }
   EXPECT_GT(with_groups, 50U) << "the drive does not show what is left out";
 }

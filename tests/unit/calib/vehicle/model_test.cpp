@@ -6,6 +6,7 @@
 #include <random>
 
 #include "calib/terms/catalogue.hpp"
+#include "calib/vehicle/drive_history.hpp"
 #include "calib/vehicle/sensitivity.hpp"
 #include "tests/unit/calib/synthetic.hpp"
 
@@ -185,7 +186,11 @@ TEST(Context, speeds_and_accelerations_are_those_of_the_wheels) {
 TEST(Backlash, is_that_of_the_plays_beside_it) {
   StepContext c;
   c.left_delta = 0.1;
-  for (std::size_t k = 0; k < kPlays.size(); ++k) c.left_lost[k] = std::min(kPlays[k], c.left_delta);
+  DriveHistory history(kBase, 0.0);
+  for (const double delta : {-1.0, 0.1}) {  // it turns round
+    c.left_delta = delta;
+    history.advance(c);
+  }
   const auto travel = [&](double play) {
     WheelStep<double> step{0.2, 0.0};
     terms::find_effect("backlash")->apply(c, std::array{play, 0.0, 0.0}, step);

@@ -5,6 +5,7 @@
 #include <numbers>
 #include <vector>
 
+#include "calib/vehicle/drive_history.hpp"
 #include "calib/vehicle/drive_model.hpp"
 #include "calib/vehicle/step_context.hpp"
 
@@ -21,7 +22,7 @@ struct Leg {
   double duration = 0.0;           ///< s
 };
 
-std::vector<StepContext> contexts_of(const std::vector<Leg>& legs) {
+DriveContext contexts_of(const std::vector<Leg>& legs) {
   wheels::WheelTrack track{{0.0}, {0.0}, {0.0}, {0}};
   for (const Leg& leg : legs)
     for (int k = 0; k < static_cast<int>(std::round(leg.duration / kPeriod)); ++k) {
@@ -34,7 +35,7 @@ std::vector<StepContext> contexts_of(const std::vector<Leg>& legs) {
 }
 
 /// Contexts of a left wheel that shows `counts` one after the other.
-std::vector<StepContext> contexts_of_counts(const std::vector<int>& counts) {
+DriveContext contexts_of_counts(const std::vector<int>& counts) {
   wheels::WheelTrack track;
   track.tick_angle = 0.01;
   for (const int count : counts) {
@@ -62,7 +63,8 @@ TEST(Reversal, counts_from_where_the_wheel_turned) {
 std::vector<double> lost_of_counts(const std::vector<int>& counts) {
   const auto play = static_cast<std::size_t>(std::find(kPlays.begin(), kPlays.end(), 0.05) - kPlays.begin());
   std::vector<double> lost;
-  for (const StepContext& c : contexts_of_counts(counts)) lost.push_back(c.left_lost.at(play));
+  const DriveContext contexts = contexts_of_counts(counts);
+  for (const StepContext& c : contexts) lost.push_back(c.lost_to_play().left.at(play));
   return lost;
 }
 
@@ -82,8 +84,9 @@ TEST(Play, loses_no_more_than_there_and_back_within_it) {
 
 TEST(Play, of_less_than_a_count_loses_its_share_of_what_is_no_dither) {
   const auto contexts = contexts_of_counts({0, 5, 10, 9, 10, 5});
-  EXPECT_EQ(contexts[2].left_lost.front() + contexts[3].left_lost.front(), 0.0) << "a count to and fro";
-  EXPECT_NEAR(contexts[4].left_lost.front(), -kPlays.front(), 1e-12);
+  EXPECT_EQ(contexts[2].lost_to_play().left.front() + contexts[3].lost_to_play().left.front(), 0.0)
+      << "a count to and fro";
+  EXPECT_NEAR(contexts[4].lost_to_play().left.front(), -kPlays.front(), 1e-12);
 }
 
 TEST(Reversal, needs_no_fast_start) {
@@ -97,16 +100,37 @@ TEST(Reversal, ends_where_a_wheel_dithers_at_rest) {
   EXPECT_NEAR(contexts[8].left_since_reversal, contexts[3].left_since_reversal, 1e-12);
 }
 
+TEST(OnDemand, is_what_a_running_drive_sees_and_the_same_again_after_it_was_forgotten) {
+  const DriveContext drive =
+      contexts_of({{kSpeed, kSpeed, 2.0}, {-kSpeed, 0.5 * kSpeed, 2.0}, {0.1, 0.2, 1.0}});
+  for (int time = 0; time < 2; ++time) {
+    DriveHistory history(kBase, 0.0);
+    std::size_t lost = 0, swings = 0;
+    for (const StepContext& c : drive) {
+      StepContext running = c;
+      history.advance(running);
+      ASSERT_EQ(c.lost_to_play().left, running.lost_to_play().left) << c.t;
+      ASSERT_EQ(c.lost_to_play().right, running.lost_to_play().right) << c.t;
+      ASSERT_EQ(c.caster(), running.caster()) << c.t;
+      lost += c.lost_to_play().left != LostToPlay{} ? 1 : 0;
+      swings += c.caster() != CasterSines{} ? 1 : 0;
+    }
+    EXPECT_GT(lost, 0U);
+    EXPECT_GT(swings, 0U);
+    drive.forget_on_demand();
+  }
+}
+
 std::size_t caster(std::size_t trail, double lean) {
   const auto place = std::find(kCasterLeans.begin(), kCasterLeans.end(), lean);
   return trail * kCasterLeans.size() + static_cast<std::size_t>(place - kCasterLeans.begin());
 }
 
 /// Sine of the caster's angle summed over the way of the leg that begins at sample `first`, in trails.
-double swing_of(const std::vector<StepContext>& contexts, std::size_t first, std::size_t which) {
+double swing_of(const DriveContext& contexts, std::size_t first, std::size_t which) {
   double push = 0.0;
   for (std::size_t k = first; k < contexts.size(); ++k)
-    push += contexts[k].caster[which] * kSpeed * kPeriod / kCasterTrails[which / kCasterLeans.size()];
+    push += contexts[k].caster()[which] * kSpeed * kPeriod / kCasterTrails[which / kCasterLeans.size()];
   return push;
 }
 
@@ -115,7 +139,7 @@ TEST(Caster, falls_off_its_lean_and_turns_through_half_a_circle) {
   for (std::size_t trail = 0; trail < kCasterTrails.size(); ++trail)
     for (const double lean : {-0.01, -0.002, 0.002, 0.01}) {
       const std::size_t which = caster(trail, lean);
-      EXPECT_NEAR(contexts[480].caster[which], lean, 0.1 * std::abs(lean)) << trail;
+      EXPECT_NEAR(contexts[480].caster()[which], lean, 0.1 * std::abs(lean)) << trail;
       // Once reversed, it points past its way by the lean less half a turn. The integral of sin(beta) ds / t
       // is that of -dbeta: half a turn, and what the lean adds on the way.
       EXPECT_NEAR(swing_of(contexts, 500, which), -std::copysign(std::numbers::pi, lean), 0.8) << trail;
@@ -124,7 +148,7 @@ TEST(Caster, falls_off_its_lean_and_turns_through_half_a_circle) {
 
 TEST(Caster, stands_on_its_head_after_a_straight_when_nothing_tips_it) {
   const auto contexts = contexts_of({{kSpeed, kSpeed, 2.0}, {-kSpeed, -kSpeed, 0.05}});
-  EXPECT_NEAR(contexts.back().caster[caster(0, 0.0)], 0.0, 1e-12);
+  EXPECT_NEAR(contexts.back().caster()[caster(0, 0.0)], 0.0, 1e-12);
 }
 
 TEST(Caster, falls_inwards_after_an_arc) {
@@ -239,7 +263,7 @@ TEST(StepContext, an_acceleration_moves_a_seat_when_it_begins_whatever_the_thres
 
 TEST(StepContext, what_a_motion_has_wound_up_unwinds_once_in_the_stop_after_it) {
   wheels::WheelTrack track = driven_at([](double t) { return t < 4.0 || (t > 5.0 && t < 5.01) ? 5.0 : 0.0; });
-  const auto sums = [](const std::vector<StepContext>& context, std::size_t winding) {
+  const auto sums = [](const DriveContext& context, std::size_t winding) {
     ReleasedWinding sum;
     for (const StepContext& c : context) {
       sum.way += c.unwound.at(winding).way;
