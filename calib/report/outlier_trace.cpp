@@ -41,9 +41,7 @@ std::vector<std::size_t> sliced(const std::vector<double>& values, std::size_t s
 /// Where an event lies so far back, how far says no more than the time does.
 double farthest(vehicle::Covariate covariate) {
   if (!is_distance_since(covariate)) return std::numeric_limits<double>::infinity();
-  const bool is_angle_of_wheel = covariate == vehicle::Covariate::left_since_reversal ||
-                                 covariate == vehicle::Covariate::right_since_reversal;
-  return is_angle_of_wheel ? 10.0 : 0.5;  // rad, m
+  return is_angle_of_a_wheel(covariate) ? 10.0 : 0.5;  // rad, m
 }
 
 /// Mean over a pair; of an angle, in its middle.

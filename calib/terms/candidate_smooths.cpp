@@ -10,59 +10,6 @@
 namespace odomcalib::calib::terms {
 namespace {
 
-using Channels = std::vector<vehicle::Channel>;
-
-/// In drives both ways a defect of the signed way and one of the unsigned way are two terms. What one wheel
-/// does moves the base sideways by no mechanism: such a term, found in straights and spins, was nonsense in
-/// circles.
-Channels channels_of(vehicle::Covariate covariate) {
-  using enum vehicle::Channel;
-  switch (covariate) {
-    case vehicle::Covariate::left_speed:
-      return {left_travel, left_path, right_travel, right_path};
-    case vehicle::Covariate::right_speed:
-      return {right_travel, right_path, left_travel, left_path};
-    case vehicle::Covariate::wheel_speed:
-      return {both_travel};
-    case vehicle::Covariate::left_phase:
-    case vehicle::Covariate::left_since_reversal:
-      return {left_travel};
-    case vehicle::Covariate::right_phase:
-    case vehicle::Covariate::right_since_reversal:
-      return {right_travel};
-    case vehicle::Covariate::left_acceleration:
-      return {left_travel, left_path};
-    case vehicle::Covariate::right_acceleration:
-      return {right_travel, right_path};
-    case vehicle::Covariate::acceleration:
-      return {both_travel, both_path, track, sideways_path, yaw_path};
-    case vehicle::Covariate::turn_acceleration:
-      return {sensor_yaw};
-    case vehicle::Covariate::speed:
-      return {both_travel, left_travel, right_travel,  track,   sideways,
-              turn_side,   both_path,   sideways_path, yaw_path};
-    case vehicle::Covariate::turn_rate:
-      return {both_travel, left_travel, right_travel, track,      sideways,      turn_path,
-              turn_side,   both_path,   left_path,    right_path, sideways_path, yaw_path};
-    case vehicle::Covariate::lateral_acceleration:
-      return {sideways, sideways_path, track, both_travel, left_travel, right_travel, both_path, yaw_path};
-    case vehicle::Covariate::time:
-      return {both_travel, left_travel, right_travel, track, sideways, turn_side, scale, yaw_path};
-    case vehicle::Covariate::heading:
-    case vehicle::Covariate::position:
-      return {both_travel, left_travel, right_travel, both_path, sideways_path, yaw_path};
-    case vehicle::Covariate::since_reversal:
-    case vehicle::Covariate::since_stop:
-    case vehicle::Covariate::previous_turn:
-      return {both_travel, left_travel, right_travel, track, sideways_path, yaw_path};
-    case vehicle::Covariate::distance:
-      return {};
-    case vehicle::Covariate::previous_acceleration:
-      return {both_travel, left_travel, right_travel, track};
-  }
-  return {};
-}
-
 bool is_unsigned(vehicle::Channel channel) {
   return channel == vehicle::Channel::both_path || channel == vehicle::Channel::sideways_path ||
          channel == vehicle::Channel::yaw_path;

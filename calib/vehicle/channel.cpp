@@ -1,52 +1,164 @@
 #include "calib/vehicle/channel.hpp"
 
 #include <array>
+#include <cstddef>
+#include <initializer_list>
 
 namespace odomcalib::calib::vehicle {
 
 namespace {
 
+/// What of a covariate terms and reports have to know, beside its value.
+enum class Trait : unsigned {
+  of_the_place,    ///< or of the day: no property of the robot
+  from_the_begin,  ///< counted from where each recording begins
+  signed_speed,    ///< its sign is the direction
+  acceleration,    ///< of a wheel, or of the base forward or to the side
+  phase,           ///< of a wheel
+  angle,
+  memory,            ///< of the last turn or acceleration, however long ago
+  since_event,       ///< distance or angle since an event
+  angle_of_a_wheel,  ///< the latter
+};
+
+class Traits {
+ public:
+  constexpr Traits(std::initializer_list<Trait> traits) {
+    for (const Trait trait : traits) bits_ |= bit(trait);
+  }
+  [[nodiscard]] constexpr bool contain(Trait trait) const { return (bits_ & bit(trait)) != 0; }
+
+ private:
+  static constexpr unsigned bit(Trait trait) { return 1U << static_cast<unsigned>(trait); }
+  unsigned bits_ = 0;
+};
+
+struct Channels {
+  std::array<Channel, static_cast<std::size_t>(kLastChannel) + 1> list{};
+  std::size_t size = 0;
+  constexpr Channels(std::initializer_list<Channel> channels) {
+    for (const Channel channel : channels) list.at(size++) = channel;
+  }
+};
+
 struct CovariateRow {
   const char* name;
   const char* manoeuvre;  ///< that shows the most of what depends on it, in a small area; empty: none
-  CovariateGroups groups = {};
+  CovariateGroups groups;
+  std::size_t memories;  ///< see memories_of
+  Traits traits;
+  Channels channels;  ///< see channels_of
 };
+
+constexpr std::size_t kOneMemory = kUsualMemory + 1;
+
+using enum Channel;
+using enum Trait;
 
 /// In the order of Covariate.
 constexpr std::array<CovariateRow, static_cast<std::size_t>(kLastCovariate) + 1> kCovariates = {{
-    {"left_speed", "straights"},
-    {"right_speed", "straights"},
-    {"wheel_speed", "straights"},
-    {"speed", "straights"},
-    {"turn_rate", "turns"},
-    {"lateral_acceleration", "arcs"},
-    {"left_acceleration", "accelerations"},
-    {"right_acceleration", "accelerations"},
-    {"acceleration", "accelerations"},
-    {"turn_acceleration", "", {CovariateGroup::sway}},
-    {"left_phase", "slow_straights"},
-    {"right_phase", "slow_straights"},
-    {"time", ""},
-    {"heading", "headings"},
-    {"position", ""},
-    {"distance", ""},
-    {"since_reversal", "reversals"},
-    {"left_since_reversal", "reversals"},
-    {"right_since_reversal", "reversals"},
-    {"since_stop", "accelerations", {CovariateGroup::stops}},
-    {"previous_turn", "turns", {CovariateGroup::previous_turn}},
-    {"previous_push", "accelerations", {CovariateGroup::previous_acceleration}},
+    {"left_speed",
+     "straights",
+     {},
+     kOneMemory,
+     {signed_speed},
+     {left_travel, left_path, right_travel, right_path}},
+    {"right_speed",
+     "straights",
+     {},
+     kOneMemory,
+     {signed_speed},
+     {right_travel, right_path, left_travel, left_path}},
+    {"wheel_speed", "straights", {}, kOneMemory, {signed_speed}, {both_travel}},
+    {"speed",
+     "straights",
+     {},
+     kOneMemory,
+     {signed_speed},
+     {both_travel, left_travel, right_travel, track, sideways, turn_side, both_path, sideways_path,
+      yaw_path}},
+    {"turn_rate",
+     "turns",
+     {},
+     kOneMemory,
+     {signed_speed},
+     {both_travel, left_travel, right_travel, track, sideways, turn_path, turn_side, both_path, left_path,
+      right_path, sideways_path, yaw_path}},
+    {"lateral_acceleration",
+     "arcs",
+     {},
+     kOneMemory,
+     {acceleration},
+     {sideways, sideways_path, track, both_travel, left_travel, right_travel, both_path, yaw_path}},
+    {"left_acceleration", "accelerations", {}, kOneMemory, {acceleration}, {left_travel, left_path}},
+    {"right_acceleration", "accelerations", {}, kOneMemory, {acceleration}, {right_travel, right_path}},
+    {"acceleration",
+     "accelerations",
+     {},
+     kOneMemory,
+     {acceleration},
+     {both_travel, both_path, track, sideways_path, yaw_path}},
+    {"turn_acceleration", "", {CovariateGroup::sway}, kSwayLags.size(), {}, {sensor_yaw}},
+    {"left_phase", "slow_straights", {}, kOneMemory, {phase, angle, from_the_begin}, {left_travel}},
+    {"right_phase", "slow_straights", {}, kOneMemory, {phase, angle, from_the_begin}, {right_travel}},
+    {"time",
+     "",
+     {},
+     kOneMemory,
+     {of_the_place, from_the_begin},
+     {both_travel, left_travel, right_travel, track, sideways, turn_side, scale, yaw_path}},
+    {"heading",
+     "headings",
+     {},
+     kOneMemory,
+     {of_the_place, from_the_begin, angle},
+     {both_travel, left_travel, right_travel, both_path, sideways_path, yaw_path}},
+    {"position",
+     "",
+     {},
+     kOneMemory,
+     {of_the_place, from_the_begin},
+     {both_travel, left_travel, right_travel, both_path, sideways_path, yaw_path}},
+    {"distance", "", {}, kOneMemory, {from_the_begin}, {}},
+    {"since_reversal",
+     "reversals",
+     {},
+     kOneMemory,
+     {since_event},
+     {both_travel, left_travel, right_travel, track, sideways_path, yaw_path}},
+    {"left_since_reversal", "reversals", {}, kOneMemory, {since_event, angle_of_a_wheel}, {left_travel}},
+    {"right_since_reversal", "reversals", {}, kOneMemory, {since_event, angle_of_a_wheel}, {right_travel}},
+    {"since_stop",
+     "accelerations",
+     {CovariateGroup::stops},
+     kStops.size(),
+     {since_event},
+     {both_travel, left_travel, right_travel, track, sideways_path, yaw_path}},
+    {"previous_turn",
+     "turns",
+     {CovariateGroup::previous_turn},
+     kMemorySpans.size(),
+     {memory},
+     {both_travel, left_travel, right_travel, track, sideways_path, yaw_path}},
+    {"previous_push",
+     "accelerations",
+     {CovariateGroup::previous_acceleration},
+     AccelerationMemory::size(),
+     {memory},
+     {both_travel, left_travel, right_travel, track}},
 }};
+
+const CovariateRow& row_of(Covariate covariate) {
+  return kCovariates.at(static_cast<std::size_t>(covariate));
+}
+
+bool has(Covariate covariate, Trait trait) { return row_of(covariate).traits.contain(trait); }
 
 }  // namespace
 
-std::string to_string(Covariate covariate) {
-  return kCovariates.at(static_cast<std::size_t>(covariate)).name;
-}
+std::string to_string(Covariate covariate) { return row_of(covariate).name; }
 
-CovariateGroups groups_of(Covariate covariate) {
-  return kCovariates.at(static_cast<std::size_t>(covariate)).groups;
-}
+CovariateGroups groups_of(Covariate covariate) { return row_of(covariate).groups; }
 
 std::optional<Covariate> covariate_from(const std::string& name) {
   for (std::size_t k = 0; k < kCovariates.size(); ++k)
@@ -54,9 +166,7 @@ std::optional<Covariate> covariate_from(const std::string& name) {
   return std::nullopt;
 }
 
-std::string manoeuvre_for(Covariate covariate) {
-  return kCovariates.at(static_cast<std::size_t>(covariate)).manoeuvre;
-}
+std::string manoeuvre_for(Covariate covariate) { return row_of(covariate).manoeuvre; }
 
 std::string to_string(Channel channel) {
   static constexpr const char* kNames[] = {"left_travel",   "right_travel", "both_travel", "track",
@@ -81,53 +191,21 @@ Channel signed_counterpart(Channel channel) {
   }
 }
 
-bool belongs_to_the_place(Covariate covariate) {
-  return covariate == Covariate::time || covariate == Covariate::heading || covariate == Covariate::position;
-}
+bool belongs_to_the_place(Covariate covariate) { return has(covariate, of_the_place); }
+bool begins_with_the_recording(Covariate covariate) { return has(covariate, from_the_begin); }
+bool is_signed_speed(Covariate covariate) { return has(covariate, signed_speed); }
+bool is_acceleration(Covariate covariate) { return has(covariate, Trait::acceleration); }
+bool is_phase(Covariate covariate) { return has(covariate, phase); }
+bool is_angle(Covariate covariate) { return has(covariate, angle); }
+bool is_memory(Covariate covariate) { return has(covariate, memory); }
+bool is_distance_since(Covariate covariate) { return has(covariate, since_event); }
+bool is_angle_of_a_wheel(Covariate covariate) { return has(covariate, angle_of_a_wheel); }
 
-bool begins_with_the_recording(Covariate covariate) {
-  return belongs_to_the_place(covariate) || is_phase(covariate) || covariate == Covariate::distance;
-}
+std::size_t memories_of(Covariate covariate) { return row_of(covariate).memories; }
 
-bool is_signed_speed(Covariate covariate) {
-  return covariate == Covariate::left_speed || covariate == Covariate::right_speed ||
-         covariate == Covariate::wheel_speed || covariate == Covariate::speed ||
-         covariate == Covariate::turn_rate;
-}
-
-bool is_acceleration(Covariate covariate) {
-  return covariate == Covariate::left_acceleration || covariate == Covariate::right_acceleration ||
-         covariate == Covariate::acceleration || covariate == Covariate::lateral_acceleration;
-}
-
-bool is_phase(Covariate covariate) {
-  return covariate == Covariate::left_phase || covariate == Covariate::right_phase;
-}
-
-bool is_angle(Covariate covariate) { return is_phase(covariate) || covariate == Covariate::heading; }
-
-bool is_memory(Covariate covariate) {
-  return covariate == Covariate::previous_turn || covariate == Covariate::previous_acceleration;
-}
-
-bool is_distance_since(Covariate covariate) {
-  return covariate == Covariate::since_reversal || covariate == Covariate::left_since_reversal ||
-         covariate == Covariate::right_since_reversal || covariate == Covariate::since_stop;
-}
-
-std::size_t memories_of(Covariate covariate) {
-  switch (covariate) {
-    case Covariate::previous_turn:
-      return kMemorySpans.size();
-    case Covariate::previous_acceleration:
-      return kMemorySpans.size() + kAccelerationThresholds.size();
-    case Covariate::turn_acceleration:
-      return kSwayLags.size();
-    case Covariate::since_stop:
-      return kStops.size();
-    default:
-      return kUsualMemory + 1;
-  }
+std::span<const Channel> channels_of(Covariate covariate) {
+  const Channels& channels = row_of(covariate).channels;
+  return std::span(channels.list).first(channels.size);
 }
 
 bool is_relay(Covariate covariate, std::size_t memory) {

@@ -2,7 +2,9 @@
 // effects and smooth terms are made.
 #pragma once
 
+#include <cstddef>
 #include <optional>
+#include <span>
 #include <string>
 
 #include "calib/vehicle/covariates/covariate_groups.hpp"
@@ -59,6 +61,8 @@ bool is_angle(Covariate covariate);
 bool is_memory(Covariate covariate);
 /// A distance or angle since an event: the defect fades with it.
 bool is_distance_since(Covariate covariate);
+/// The latter.
+bool is_angle_of_a_wheel(Covariate covariate);
 
 /// In how many ways the covariate can be understood; all but the usual one are tried once it is found.
 std::size_t memories_of(Covariate covariate);
@@ -98,6 +102,10 @@ enum class Channel {
 };
 inline constexpr Channel kLastChannel = Channel::sensor_yaw;
 std::string to_string(Channel channel);
+/// On which a free term of the covariate is tried. In drives both ways a defect of the signed way and one of
+/// the unsigned way are two terms. What one wheel does moves the base sideways by no mechanism: such a term,
+/// found in straights and spins, was nonsense in circles.
+std::span<const Channel> channels_of(Covariate covariate);
 /// Signed counterpart of an unsigned way: whatever depends on a speed may change either, and only the
 /// direction distinguishes them. Any other channel is its own.
 Channel signed_counterpart(Channel channel);

@@ -4,9 +4,8 @@
 
 namespace odomcalib::calib::terms {
 BasisValues FadingSince::values(const Argument& at) const {
-  const bool of_wheel = at.dependence.covariate == vehicle::Covariate::left_since_reversal ||
-                        at.dependence.covariate == vehicle::Covariate::right_since_reversal;
-  const double nearest = of_wheel ? settings::kNearestKnot_rad : settings::kNearestKnot_m;
+  const double nearest =
+      is_angle_of_a_wheel(at.dependence.covariate) ? settings::kNearestKnot_rad : settings::kNearestKnot_m;
   const double place = std::log2(std::max(at.z, nearest) / nearest);
   BasisValues functions;
   for (int k = 0; k < kFadeKnots; ++k) functions.push_back(hat(place - k));
