@@ -207,44 +207,48 @@ std::vector<StepResponse> Sensitivity::by_steps(const EffectList& effects,
   const More more = with(effects, parameters);
   const std::vector<Jet> jets = seed(more.parameters, along_.parameters().size());
   const auto count = parameters.size();
-  std::vector<std::size_t> first;
-  std::vector<std::vector<Eigen::Matrix3Xd>> rows(count);
-  for (const Path& path : paths_) first.push_back(path.first);
-  for (auto& of_parameter : rows) of_parameter.reserve(paths_.size());
+  std::vector<StepResponse::Span> spans;
+  Eigen::Index steps = 0;
+  for (const Path& path : paths_) {
+    spans.push_back({path.first, path.by_twist.size()});
+    steps += static_cast<Eigen::Index>(path.by_twist.size());
+  }
+  std::vector<Eigen::Matrix3Xd> rows(count, Eigen::Matrix3Xd(3, steps));
+  Eigen::Index column = 0;
   for (std::size_t begin = 0; begin < paths_.size(); begin += kMotions) {
     const auto some = std::span<const Path>(paths_).subspan(begin, std::min(kMotions, paths_.size() - begin));
     const TwistDerivatives twists(steps_of(some), model_.context(), jets, more.effects);
-    for (std::size_t p = 0; p < count; ++p)
-      for (const Path& path : some) {
-        Eigen::Matrix3Xd row(3, static_cast<Eigen::Index>(path.by_twist.size()));
-        for (std::size_t k = 0; k < path.by_twist.size(); ++k)
-          row.col(static_cast<Eigen::Index>(k)) =
-              path.to_sensor.leftCols<3>() *
-              (path.by_twist[k] * twists[path.first + k].col(static_cast<Eigen::Index>(p)));
-        rows[p].push_back(std::move(row));
-      }
+    for (const Path& path : some)
+      for (std::size_t k = 0; k < path.by_twist.size(); ++k, ++column)
+        for (std::size_t p = 0; p < count; ++p)
+          rows[p].col(column) = path.to_sensor.leftCols<3>() *
+                                (path.by_twist[k] * twists[path.first + k].col(static_cast<Eigen::Index>(p)));
   }
   std::vector<StepResponse> responses;
   responses.reserve(count);
-  for (auto& of_parameter : rows) responses.emplace_back(first, std::move(of_parameter));
+  for (auto& of_parameter : rows) responses.emplace_back(spans, std::move(of_parameter));
   return responses;
 }
 
 /// Some motions at a time, whose functions stay in the fastest memory.
 Eigen::MatrixXd StepResponse::by_coefficients(const Eigen::MatrixXd& functions,
                                               const Eigen::RowVectorXd& mean) const {
-  Eigen::MatrixXd all(static_cast<Eigen::Index>(3 * rows_.size()), functions.cols()), near;
-  for (std::size_t begin = 0; begin < rows_.size(); begin += kMotions) {
-    const std::size_t end = std::min(begin + kMotions, rows_.size());
+  Eigen::MatrixXd all(static_cast<Eigen::Index>(3 * spans_.size()), functions.cols()), near;
+  Eigen::Index column = 0;
+  for (std::size_t begin = 0; begin < spans_.size(); begin += kMotions) {
+    const std::size_t end = std::min(begin + kMotions, spans_.size());
     Steps steps;
-    for (std::size_t i = begin; i < end; ++i)
-      steps.take(first_[i], static_cast<std::size_t>(rows_[i].cols()));
+    for (std::size_t i = begin; i < end; ++i) steps.take(spans_[i].first, spans_[i].count);
     near = functions.middleRows(static_cast<Eigen::Index>(steps.begin),
                                 static_cast<Eigen::Index>(steps.end - steps.begin));
     if (mean.size() > 0) near.rowwise() -= mean;
-    for (std::size_t i = begin; i < end; ++i)
-      all.middleRows<3>(static_cast<Eigen::Index>(3 * i)).noalias() = rows_[i].lazyProduct(
-          near.middleRows(static_cast<Eigen::Index>(first_[i] - steps.begin), rows_[i].cols()));
+    for (std::size_t i = begin; i < end; ++i) {
+      const auto count = static_cast<Eigen::Index>(spans_[i].count);
+      all.middleRows<3>(static_cast<Eigen::Index>(3 * i)).noalias() =
+          rows_.middleCols(column, count)
+              .lazyProduct(near.middleRows(static_cast<Eigen::Index>(spans_[i].first - steps.begin), count));
+      column += count;
+    }
   }
   return all;
 }

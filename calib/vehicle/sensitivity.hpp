@@ -13,10 +13,15 @@ namespace odomcalib::calib::vehicle {
 /// Response of each motion to an effect of one parameter, tick interval by tick interval.
 class StepResponse {
  public:
-  /// @param first tick interval of each motion
-  /// @param rows of each motion: by the parameter as it acts in the first interval, the second, ...
-  StepResponse(std::vector<std::size_t> first, std::vector<Eigen::Matrix3Xd> rows)
-      : first_(std::move(first)), rows_(std::move(rows)) {}
+  /// Tick intervals of a motion.
+  struct Span {
+    std::size_t first, count;
+  };
+  /// @param spans of each motion
+  /// @param rows one motion after the other: by the parameter as it acts in its first interval, its second,
+  /// ...
+  StepResponse(std::vector<Span> spans, Eigen::Matrix3Xd rows)
+      : spans_(std::move(spans)), rows_(std::move(rows)) {}
 
   /// Derivatives of the motions by coefficients of functions that the parameter is the sum of.
   /// @param functions tick intervals x coefficients
@@ -26,8 +31,8 @@ class StepResponse {
                                                 const Eigen::RowVectorXd& mean = {}) const;
 
  private:
-  std::vector<std::size_t> first_;
-  std::vector<Eigen::Matrix3Xd> rows_;
+  std::vector<Span> spans_;
+  Eigen::Matrix3Xd rows_;
 };
 
 /// Derivatives of the sensor's motions along a trajectory.

@@ -387,6 +387,9 @@ void RecordingBuilder::sort_streams() {
   drop_repeated("scan", recording_.scans, same_scan);
   drop_repeated("pose", recording_.poses, same);
   drop_repeated("gyro", recording_.gyro, same);
+  // Both are kept as long as the recording; growing has left them up to twice their size.
+  recording_.ticks.shrink_to_fit();
+  recording_.scans.shrink_to_fit();
 }
 
 /// The finest that is there decides; what is coarser is left out, and counted.
