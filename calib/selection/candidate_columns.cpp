@@ -20,16 +20,19 @@ static_assert(kChannels <= vehicle::kJetSize);
 /// A constant defect on every channel, of size zero: what smooth terms are linear in.
 class Defects final : public terms::StepEffect<Defects> {
  public:
-  [[nodiscard]] std::string name() const override { return "defects"; }
-  [[nodiscard]] std::vector<vehicle::EffectParameter> parameters() const override {
+  Defects() : StepEffect({.name = "defects", .parameters = one_of_each_channel()}) {}
+
+  template <typename T>
+  static void act(const vehicle::StepContext& c, std::span<const T> p, vehicle::WheelStep<T>& step) {
+    for (std::size_t k = 0; k < kChannels; ++k) carry(static_cast<vehicle::Channel>(k), c, p[k], step);
+  }
+
+ private:
+  static std::vector<vehicle::EffectParameter> one_of_each_channel() {
     std::vector<vehicle::EffectParameter> list;
     for (std::size_t k = 0; k < kChannels; ++k)
       list.push_back({to_string(static_cast<vehicle::Channel>(k)), "1", 1.0, -1.0, 1.0});
     return list;
-  }
-  template <typename T>
-  static void act(const vehicle::StepContext& c, std::span<const T> p, vehicle::WheelStep<T>& step) {
-    for (std::size_t k = 0; k < kChannels; ++k) carry(static_cast<vehicle::Channel>(k), c, p[k], step);
   }
 };
 

@@ -17,7 +17,7 @@ BeamShift LidarEffect::total(const Sighting& sighting, std::span<const double> v
 std::vector<std::pair<std::string, Quantity>> LidarEffect::quantities(
     std::span<const double> values, std::span<const double> deviations) const {
   std::vector<std::pair<std::string, Quantity>> out;
-  const auto list = parameters();
+  const std::vector<LidarParameter>& list = parameters();
   for (std::size_t k = 0; k < list.size(); ++k)
     out.push_back({list[k].name, {values[k], deviations[k], list[k].unit}});
   return out;

@@ -32,27 +32,47 @@ struct LidarParameter {
   double largest = 0.0;     ///< no device is worse
 };
 
-class LidarEffect {
- public:
-  virtual ~LidarEffect() = default;
+/// What an effect of the lidar is, all of it constant: one row of the catalogue, in the file of the effect.
+struct LidarEffectRow {
   /// Name of the effect; the covariate where it is an unnamed dependence.
-  [[nodiscard]] virtual std::string name() const = 0;
-  [[nodiscard]] virtual bool is_named() const { return true; }
+  std::string name;
+  bool is_named = true;
   /// Whether scans may be corrected by it. What is nearly a common scale no scan shows well enough: it is
   /// reported, and the scans stay as they are.
-  [[nodiscard]] virtual bool is_correctable() const { return true; }
+  bool is_correctable = true;
   /// Whether the map of all scans judges it better than pairs of scans do.
-  [[nodiscard]] virtual bool is_judged_in_map() const { return false; }
+  bool is_judged_in_map = false;
   /// Share of the squared disagreement between scans that it may leave, at most, to be worth its freedom.
-  [[nodiscard]] virtual double may_leave() const { return 0.9965; }
+  double may_leave = 0.9965;
   /// How many deviations the mean gain on held-out pairs must lie above zero.
-  [[nodiscard]] virtual double least_z() const { return 2.5; }
+  double least_z = 2.5;
   /// Share of the statistic of a free term of its covariate that it must reach to be taken instead.
-  [[nodiscard]] virtual double share_of_free_term() const { return 0.5; }
+  double share_of_free_term = 0.5;
   /// The covariate it depends on. A rest that depends on the same one is the same effect with another
   /// function.
-  [[nodiscard]] virtual std::string covariate() const = 0;
-  [[nodiscard]] virtual std::vector<LidarParameter> parameters() const = 0;
+  std::string covariate;
+  std::vector<LidarParameter> parameters;
+  std::vector<std::string> aliases = {};
+};
+
+/// A row, and what acts: a class of its own for each effect has the functions.
+class LidarEffect {
+ public:
+  explicit LidarEffect(LidarEffectRow row) : row_(std::move(row)) {}
+  virtual ~LidarEffect() = default;
+
+  /// Members of the row, as long as the effect lives.
+  [[nodiscard]] const std::string& name() const { return row_.name; }
+  [[nodiscard]] bool is_named() const { return row_.is_named; }
+  [[nodiscard]] bool is_correctable() const { return row_.is_correctable; }
+  [[nodiscard]] bool is_judged_in_map() const { return row_.is_judged_in_map; }
+  [[nodiscard]] double may_leave() const { return row_.may_leave; }
+  [[nodiscard]] double least_z() const { return row_.least_z; }
+  [[nodiscard]] double share_of_free_term() const { return row_.share_of_free_term; }
+  [[nodiscard]] const std::string& covariate() const { return row_.covariate; }
+  [[nodiscard]] const std::vector<LidarParameter>& parameters() const { return row_.parameters; }
+  [[nodiscard]] const std::vector<std::string>& aliases() const { return row_.aliases; }
+
   /// Shift per unit of each parameter: errors are linear in them to first order.
   [[nodiscard]] virtual std::vector<BeamShift> shifts(const Sighting& sighting) const = 0;
   /// Total shift by the parameters, beyond first order where the physics is known.
@@ -63,7 +83,9 @@ class LidarEffect {
   /// The other way round: parameters from what quantities() states, in its order. Fewer than those are
   /// none of this effect: empty.
   [[nodiscard]] virtual std::vector<double> values_of(const QuantityList& stated) const;
-  [[nodiscard]] virtual std::vector<std::string> aliases() const { return {}; }
+
+ private:
+  LidarEffectRow row_;
 };
 
 using LidarEffectPtr = std::shared_ptr<const LidarEffect>;

@@ -14,24 +14,30 @@
 namespace odomcalib::calib::terms {
 namespace {
 
+/// One for each function of the covariate, numbered.
+std::vector<LidarParameter> numbered_parameters(bool radial, std::size_t size) {
+  const LidarParameter one =
+      radial ? LidarParameter{"radial", "m", settings::kSmallShift_m, settings::kLargestShift_m}
+             : LidarParameter{"angular", "rad", settings::kSmallAngle_rad, settings::kLargestAngle_rad};
+  std::vector<LidarParameter> all(size, one);
+  for (std::size_t k = 0; k < size; ++k) all[k].name += std::to_string(k + 1);
+  return all;
+}
+
+/// Row of a dependence that no named effect stands for: its name is the covariate.
+LidarEffectRow unnamed_row(const std::string& covariate, bool radial, std::size_t size) {
+  return {.name = covariate,
+          .is_named = false,
+          .covariate = covariate,
+          .parameters = numbered_parameters(radial, size)};
+}
+
 class UnnamedError : public LidarEffect {
  public:
-  UnnamedError(std::string covariate, bool radial, std::size_t size)
-      : covariate_(std::move(covariate)), radial_(radial), size_(size) {}
-  [[nodiscard]] std::string name() const override { return covariate_; }
-  [[nodiscard]] bool is_named() const override { return false; }
-  [[nodiscard]] std::string covariate() const override { return covariate_; }
-  [[nodiscard]] std::vector<LidarParameter> parameters() const override {
-    const LidarParameter one =
-        radial_ ? LidarParameter{"radial", "m", settings::kSmallShift_m, settings::kLargestShift_m}
-                : LidarParameter{"angular", "rad", settings::kSmallAngle_rad, settings::kLargestAngle_rad};
-    std::vector<LidarParameter> all(size_, one);
-    for (std::size_t k = 0; k < size_; ++k) all[k].name += std::to_string(k + 1);
-    return all;
-  }
+  UnnamedError(LidarEffectRow row, bool radial) : LidarEffect(std::move(row)), radial_(radial) {}
   [[nodiscard]] std::vector<BeamShift> shifts(const Sighting& sighting) const override {
     std::vector<BeamShift> all;
-    all.reserve(size_ + 1);
+    all.reserve(parameters().size() + 1);
     for (const double f : functions(sighting)) all.push_back(radial_ ? BeamShift{f, 0.0} : BeamShift{0.0, f});
     return all;
   }
@@ -40,15 +46,13 @@ class UnnamedError : public LidarEffect {
   [[nodiscard]] virtual std::vector<double> functions(const Sighting& sighting) const = 0;
 
  private:
-  std::string covariate_;
   bool radial_;
-  std::size_t size_;
 };
 
 /// Three harmonics.
 class OfBearing final : public UnnamedError {
  public:
-  explicit OfBearing(bool radial) : UnnamedError("bearing", radial, 6) {}
+  explicit OfBearing(bool radial) : UnnamedError(unnamed_row("bearing", radial, 6), radial) {}
 
  private:
   [[nodiscard]] std::vector<double> functions(const Sighting& s) const override {
@@ -70,16 +74,8 @@ class OfSector final : public UnnamedError {
  public:
   /// @param knots that are seen, two at least
   explicit OfSector(std::vector<std::size_t> knots)
-      : UnnamedError("bearing", true, knots.size() - 1), knots_(std::move(knots)) {}
-  [[nodiscard]] std::vector<LidarParameter> parameters() const override {
-    std::vector<LidarParameter> all = UnnamedError::parameters();
-    for (std::size_t k = 0; k < all.size(); ++k)
-      all[k].name = "radial_at_" + std::to_string(360 / settings::kBearingKnots * knots_[k + 1]);
-    return all;
-  }
+      : UnnamedError(row(knots), true), knots_(std::move(knots)) {}
 
-  /// An obstacle that hides part of a view is no small thing; small bends of the whole are harmonics.
-  [[nodiscard]] double may_leave() const override { return 0.85; }
   /// No scan shows well what all parts have in common: most of the view is taken to be right.
   [[nodiscard]] BeamShift total(const Sighting& sighting, std::span<const double> values) const override {
     std::vector<double> at_knots{0.0};
@@ -96,6 +92,14 @@ class OfSector final : public UnnamedError {
   }
 
  private:
+  static LidarEffectRow row(const std::vector<std::size_t>& knots) {
+    LidarEffectRow row = unnamed_row("bearing", true, knots.size() - 1);
+    for (std::size_t k = 0; k < row.parameters.size(); ++k)
+      row.parameters[k].name = "radial_at_" + std::to_string(360 / settings::kBearingKnots * knots[k + 1]);
+    // An obstacle that hides part of a view is no small thing; small bends of the whole are harmonics.
+    row.may_leave = 0.85;
+    return row;
+  }
   static double hat(double place, std::size_t knot) {
     const double apart = std::abs(place - static_cast<double>(knot));
     return std::max(0.0, 1.0 - std::min(apart, static_cast<double>(settings::kBearingKnots) - apart));
@@ -121,10 +125,14 @@ class OfSector final : public UnnamedError {
 /// outwards. What they have in common with a scale no scan shows.
 class OfRange final : public UnnamedError {
  public:
-  OfRange() : UnnamedError("range", true, settings::kRangeKnots) {}
-  [[nodiscard]] bool is_correctable() const override { return false; }
+  OfRange() : UnnamedError(row(), true) {}
 
  private:
+  static LidarEffectRow row() {
+    LidarEffectRow row = unnamed_row("range", true, settings::kRangeKnots);
+    row.is_correctable = false;
+    return row;
+  }
   [[nodiscard]] std::vector<double> functions(const Sighting& s) const override {
     const double place = std::clamp(std::log2(std::max(s.range, 1e-3) / settings::kNearestRange_m), 0.0,
                                     static_cast<double>(settings::kRangeKnots - 1));
@@ -137,11 +145,15 @@ class OfRange final : public UnnamedError {
 
 class OfIncidence final : public UnnamedError {
  public:
-  OfIncidence() : UnnamedError("incidence", true, 4) {}
-  [[nodiscard]] bool is_judged_in_map() const override { return true; }
-  [[nodiscard]] bool is_correctable() const override { return false; }
+  OfIncidence() : UnnamedError(row(), true) {}
 
  private:
+  static LidarEffectRow row() {
+    LidarEffectRow row = unnamed_row("incidence", true, 4);
+    row.is_correctable = false;
+    row.is_judged_in_map = true;
+    return row;
+  }
   [[nodiscard]] std::vector<double> functions(const Sighting& s) const override {
     const auto values = slants(s);
     return {values.begin(), values.end()};

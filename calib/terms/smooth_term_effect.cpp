@@ -26,45 +26,74 @@ double typical_size_of(const SmoothTerm& smooth) {
 
 double strength_of(const SmoothTerm& smooth) { return smooth.strong ? 6.0 : 1.0; }
 
+/// Just after a reversal or a stop a wheel may lose a good part of its travel; otherwise no robot is that
+/// bad.
+double largest_size_of(const SmoothTerm& smooth) {
+  if (basis_as<FadingSince>(smooth)) return 100.0 * typical_size_of(smooth);
+  return (smooth.strong ? 60.0 : 20.0) * typical_size_of(smooth);
+}
+
+/// Wide for any real defect, narrow enough that what this drive does not show is not made up: a smooth term
+/// must do no harm in other drives.
+double prior_of(const SmoothTerm& smooth, std::size_t function) {
+  const double usual = 4.0 * typical_size_of(smooth);
+  if (const auto* fading = basis_as<FadingSince>(smooth))
+    return std::min(fading->prior(function, usual), largest_size_of(smooth));
+  const auto* turn_path = basis_as<TurnPath>(smooth);
+  return (turn_path ? turn_path->prior(function, usual) : usual) * strength_of(smooth);
+}
+
+std::vector<vehicle::EffectParameter> coefficients_of(const SmoothTerm& smooth) {
+  const double largest = largest_size_of(smooth);
+  std::vector<vehicle::EffectParameter> list;
+  for (std::size_t k = 0; k < function_count(smooth); ++k)
+    list.push_back({.name = "c" + std::to_string(k + 1),
+                    .unit = "1",
+                    .scale = typical_size_of(smooth),
+                    .lower = -largest,
+                    .upper = largest,
+                    .prior = prior_of(smooth, k)});
+  return list;
+}
+
+std::vector<std::vector<double>> expected_zeros_of(const SmoothTerm& smooth) {
+  const auto* splines = basis_as<Splines>(smooth);
+  if (!splines) return {};
+  return splines->penalty(strength_of(smooth), typical_size_of(smooth), function_count(smooth));
+}
+
+/// A head that sways moves sideways too, which looks like a base that does: odometry must not follow it.
+std::vector<vehicle::Channel> excluded_channels_of(const SmoothTerm& smooth) {
+  if (!concerns_sensor(smooth)) return {};
+  return {vehicle::Channel::turn_side, vehicle::Channel::sideways};
+}
+
+vehicle::Storage storage_of(const SmoothTerm& smooth) {
+  if (belongs_to_lidar(smooth)) return vehicle::Storage::driver;
+  return is_of_one_drive(smooth) ? vehicle::Storage::nowhere : vehicle::Storage::host;
+}
+
+/// Wheels that changed with time begin the next drive as they ended this one.
+bool is_carried_over(const SmoothTerm& smooth) {
+  return smooth.dependence.covariate == vehicle::Covariate::time && !belongs_to_lidar(smooth) &&
+         !basis_as<Cycle>(smooth);
+}
+
+vehicle::EffectRow row_of(const SmoothTerm& smooth) {
+  return {.name = "curve of " + to_string(smooth.dependence.covariate) + " on " +
+                  to_string(smooth.dependence.channel),
+          .parameters = coefficients_of(smooth),
+          .expected_zeros = expected_zeros_of(smooth),
+          .excluded_channels = excluded_channels_of(smooth),
+          .storage = storage_of(smooth),
+          .carries_over = is_carried_over(smooth),
+          .covariates = groups_of(smooth.dependence.covariate)};
+}
+
 class SmoothTermEffect final : public StepEffect<SmoothTermEffect> {
  public:
-  explicit SmoothTermEffect(const SmoothTerm& smooth) : smooth_(smooth) {}
-  [[nodiscard]] std::string name() const override {
-    return "curve of " + to_string(smooth_.dependence.covariate) + " on " +
-           to_string(smooth_.dependence.channel);
-  }
-  [[nodiscard]] std::vector<vehicle::EffectParameter> parameters() const override {
-    std::vector<vehicle::EffectParameter> list;
-    for (std::size_t k = 0; k < function_count(smooth_); ++k) {
-      std::string name(1, 'c');
-      list.push_back({name.append(std::to_string(k + 1)), "1", typical_size(), -largest_size(),
-                      largest_size(), 0.0, prior(k)});
-    }
-    return list;
-  }
-  [[nodiscard]] std::vector<std::vector<double>> expected_zeros() const override {
-    const auto* splines = basis_as<Splines>(smooth_);
-    if (!splines) return {};
-    return splines->penalty(strength(), typical_size(), function_count(smooth_));
-  }
-  [[nodiscard]] vehicle::Storage storage() const override {
-    if (belongs_to_lidar(smooth_)) return vehicle::Storage::driver;
-    return is_of_one_drive(smooth_) ? vehicle::Storage::nowhere : vehicle::Storage::host;
-  }
-  /// Wheels that changed with time begin the next drive as they ended this one.
-  [[nodiscard]] bool carries_over() const override {
-    return smooth_.dependence.covariate == vehicle::Covariate::time && !belongs_to_lidar(smooth_) &&
-           !basis_as<Cycle>(smooth_);
-  }
-  /// A head that sways moves sideways too, which looks like a base that does: odometry must not follow it.
-  [[nodiscard]] bool excludes(const vehicle::Dependence& dependence) const override {
-    return concerns_sensor(smooth_) && (dependence.channel == vehicle::Channel::turn_side ||
-                                        dependence.channel == vehicle::Channel::sideways);
-  }
+  explicit SmoothTermEffect(const SmoothTerm& smooth) : StepEffect(row_of(smooth)), smooth_(smooth) {}
 
-  [[nodiscard]] vehicle::CovariateGroups covariates() const override {
-    return groups_of(smooth_.dependence.covariate);
-  }
   template <typename T>
   void act(const vehicle::StepContext& c, std::span<const T> p, vehicle::WheelStep<T>& step) const {
     const std::span<const vehicle::Channel> channels = acts_on(smooth_);
@@ -77,24 +106,6 @@ class SmoothTermEffect final : public StepEffect<SmoothTermEffect> {
   }
 
  private:
-  [[nodiscard]] double typical_size() const { return typical_size_of(smooth_); }
-  /// Just after a reversal or a stop a wheel may lose a good part of its travel; otherwise no robot is that
-  /// bad.
-  [[nodiscard]] double largest_size() const {
-    if (basis_as<FadingSince>(smooth_)) return 100.0 * typical_size();
-    return (smooth_.strong ? 60.0 : 20.0) * typical_size();
-  }
-  [[nodiscard]] double strength() const { return strength_of(smooth_); }
-  /// Wide for any real defect, narrow enough that what this drive does not show is not made up: a smooth term
-  /// must do no harm in other drives.
-  [[nodiscard]] double prior(std::size_t function) const {
-    const double usual = 4.0 * typical_size();
-    if (const auto* fading = basis_as<FadingSince>(smooth_))
-      return std::min(fading->prior(function, usual), largest_size());
-    const auto* turn_path = basis_as<TurnPath>(smooth_);
-    return (turn_path ? turn_path->prior(function, usual) : usual) * strength();
-  }
-
   SmoothTerm smooth_;
 };
 

@@ -1,11 +1,14 @@
-// Interface of one effect: something that can be missing in the plain differential-drive model.
+// One effect, something that can be missing in the plain differential-drive model: a row of data, and the
+// functions that act.
 #pragma once
 
 #include <ceres/jet.h>
 
+#include <algorithm>
 #include <memory>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "calib/vehicle/channel.hpp"
@@ -41,51 +44,79 @@ enum class Storage { controller, host, driver, nowhere };
 /// The part that an effect describes of the sensor's clock against that of the encoders.
 enum class ClockPart { none, offset, rate };
 
-class Effect {
- public:
-  virtual ~Effect() = default;
-  [[nodiscard]] virtual std::string name() const = 0;
-  [[nodiscard]] virtual std::vector<EffectParameter> parameters() const = 0;
+/// What an effect is, all of it constant: one row of the catalogue, in the file of the effect.
+struct EffectRow {
+  std::string name;
+  std::vector<EffectParameter> parameters;
   /// Combinations of the parameters, in deviations, that a prior expects to be zero beside the parameters'
   /// own: a row each, a factor for each parameter.
-  [[nodiscard]] virtual std::vector<std::vector<double>> expected_zeros() const { return {}; }
+  std::vector<std::vector<double>> expected_zeros = {};
   /// Names of the effects that look alike, and the motion that separates them.
-  [[nodiscard]] virtual std::vector<std::string> aliases() const { return {}; }
+  std::vector<std::string> aliases = {};
   /// Names that no motion can separate from this one: listed beside it whenever it is found.
-  [[nodiscard]] virtual std::vector<std::string> observationally_equivalent() const { return {}; }
-  [[nodiscard]] virtual std::string separating_motion() const { return {}; }
+  std::vector<std::string> observationally_equivalent = {};
+  std::string separating_motion = {};
   /// The motion that separates them, as a manoeuvre that can be driven in a small area; empty: none.
-  [[nodiscard]] virtual std::string manoeuvre() const { return {}; }
-  /// The same effect with other shapes to start from; a search tries them all and keeps the best.
-  [[nodiscard]] virtual std::vector<std::shared_ptr<const Effect>> variants() const { return {}; }
+  std::string manoeuvre = {};
   /// Where its signature lies. A rest that depends on these covariates on these channels is the same effect
   /// with another function than the textbook's.
-  [[nodiscard]] virtual std::vector<Dependence> dependences() const { return {}; }
-  [[nodiscard]] virtual Storage storage() const { return Storage::host; }
+  std::vector<Dependence> dependences = {};
+  /// A free smooth term of one of these covariates, or on one of these channels, would describe the same once
+  /// more where this effect was found.
+  std::vector<Covariate> excluded_covariates = {};
+  std::vector<Channel> excluded_channels = {};
+  Storage storage = Storage::host;
   /// Whether it distorts the sweeps of the sensor: a comparison with the reference needs it, dead reckoning
   /// must not have it.
-  [[nodiscard]] virtual bool bends_scans() const { return false; }
+  bool bends_scans = false;
   /// Whether the next drive begins with it as this one ended.
-  [[nodiscard]] virtual bool carries_over() const { return false; }
-  [[nodiscard]] virtual ClockPart clock_part() const { return ClockPart::none; }
-  /// Whether a free smooth term of that dependence would describe the same once more where this effect was
-  /// found.
-  [[nodiscard]] virtual bool excludes(const Dependence& dependence) const {
-    (void)dependence;
-    return false;
+  bool carries_over = false;
+  ClockPart clock_part = ClockPart::none;
+  /// Whether either of two states may be the undisturbed one: nothing shows which way of turning is the
+  /// normal one.
+  bool has_two_states = false;
+  /// Covariates that apply() uses beside those that every interval has.
+  CovariateGroups covariates = {};
+};
+
+/// A row, and what acts: a class of its own for each effect has the functions.
+class Effect {
+ public:
+  explicit Effect(EffectRow row) : row_(std::move(row)) {}
+  virtual ~Effect() = default;
+
+  /// Members of the row, as long as the effect lives.
+  [[nodiscard]] const std::string& name() const { return row_.name; }
+  [[nodiscard]] const std::vector<EffectParameter>& parameters() const { return row_.parameters; }
+  [[nodiscard]] const std::vector<std::vector<double>>& expected_zeros() const { return row_.expected_zeros; }
+  [[nodiscard]] const std::vector<std::string>& aliases() const { return row_.aliases; }
+  [[nodiscard]] const std::vector<std::string>& observationally_equivalent() const {
+    return row_.observationally_equivalent;
   }
+  [[nodiscard]] const std::string& separating_motion() const { return row_.separating_motion; }
+  [[nodiscard]] const std::string& manoeuvre() const { return row_.manoeuvre; }
+  [[nodiscard]] const std::vector<Dependence>& dependences() const { return row_.dependences; }
+  [[nodiscard]] bool excludes(const Dependence& dependence) const {
+    const auto contains = [](const auto& list, const auto& one) {
+      return std::find(list.begin(), list.end(), one) != list.end();
+    };
+    return contains(row_.excluded_covariates, dependence.covariate) ||
+           contains(row_.excluded_channels, dependence.channel);
+  }
+  [[nodiscard]] Storage storage() const { return row_.storage; }
+  [[nodiscard]] bool bends_scans() const { return row_.bends_scans; }
+  [[nodiscard]] bool carries_over() const { return row_.carries_over; }
+  [[nodiscard]] ClockPart clock_part() const { return row_.clock_part; }
+  [[nodiscard]] bool has_two_states() const { return row_.has_two_states; }
+  [[nodiscard]] CovariateGroups covariates() const { return row_.covariates; }
+
+  /// The same effect with other shapes to start from; a search tries them all and keeps the best.
+  [[nodiscard]] virtual std::vector<std::shared_ptr<const Effect>> variants() const { return {}; }
   /// Why no mechanism makes these values together, each of them possible; empty when one does.
   [[nodiscard]] virtual std::string contradiction(std::span<const double> parameters) const {
     (void)parameters;
     return {};
   }
-
-  /// Whether either of two states may be the undisturbed one: nothing shows which way of turning is the
-  /// normal one.
-  [[nodiscard]] virtual bool has_two_states() const { return false; }
-
-  /// Covariates that apply() uses beside those that every interval has.
-  [[nodiscard]] virtual CovariateGroups covariates() const { return {}; }
   /// Changes the motion of one tick interval in place. Parameters at their start leave it unchanged.
   virtual void apply(const StepContext& context, std::span<const double> parameters,
                      WheelStep<double>& step) const {
@@ -105,6 +136,9 @@ class Effect {
     (void)time, (void)parameters;
     return Jet(0.0);
   }
+
+ private:
+  EffectRow row_;
 };
 
 using EffectList = std::vector<std::shared_ptr<const Effect>>;

@@ -9,26 +9,31 @@ namespace {
 // is strong, the slip of one of the two is all there is (side 1 driving, -1 braking, 0 both alike).
 class AccelerationSlip final : public StepEffect<AccelerationSlip> {
  public:
-  explicit AccelerationSlip(double side) : side_(side) {}
-  [[nodiscard]] std::string name() const override { return "acceleration_slip"; }
-  [[nodiscard]] std::vector<vehicle::EffectParameter> parameters() const override {
-    return {{"k", "s^2/m", 0.01, -0.2, 0.2}, {"side", "1", 1e9, -1.0, 1.0, side_, 0.0, true}};
+  explicit AccelerationSlip(double side) : StepEffect(row(side)) {}
+
+  static vehicle::EffectRow row(double side) {
+    return {.name = "acceleration_slip",
+            .parameters = {{.name = "k", .unit = "s^2/m", .scale = 0.01, .lower = -0.2, .upper = 0.2},
+                           {.name = "side",
+                            .unit = "1",
+                            .scale = 1e9,
+                            .lower = -1.0,
+                            .upper = 1.0,
+                            .start = side,
+                            .fixed = true}},
+            .aliases = {"time_offset", "encoder_lag"},
+            .separating_motion = "equal accelerations at low and at high speed",
+            .manoeuvre = "accelerations",
+            .dependences = {{vehicle::Covariate::left_acceleration, vehicle::Channel::left_path},
+                            {vehicle::Covariate::right_acceleration, vehicle::Channel::right_path},
+                            {vehicle::Covariate::left_acceleration, vehicle::Channel::left_travel},
+                            {vehicle::Covariate::right_acceleration, vehicle::Channel::right_travel}}};
   }
-  [[nodiscard]] std::vector<std::string> aliases() const override { return {"time_offset", "encoder_lag"}; }
-  [[nodiscard]] std::string separating_motion() const override {
-    return "equal accelerations at low and at high speed";
-  }
-  [[nodiscard]] std::string manoeuvre() const override { return "accelerations"; }
+
   [[nodiscard]] std::vector<std::shared_ptr<const vehicle::Effect>> variants() const override {
     std::vector<std::shared_ptr<const vehicle::Effect>> all;
     for (const double side : {0.0, -1.0, 1.0}) all.push_back(std::make_shared<AccelerationSlip>(side));
     return all;
-  }
-  [[nodiscard]] std::vector<vehicle::Dependence> dependences() const override {
-    return {{vehicle::Covariate::left_acceleration, vehicle::Channel::left_path},
-            {vehicle::Covariate::right_acceleration, vehicle::Channel::right_path},
-            {vehicle::Covariate::left_acceleration, vehicle::Channel::left_travel},
-            {vehicle::Covariate::right_acceleration, vehicle::Channel::right_travel}};
   }
 
   template <typename T>
@@ -43,8 +48,6 @@ class AccelerationSlip final : public StepEffect<AccelerationSlip> {
     const double growth = vehicle::growth_of_speed_magnitude(acceleration, speed);
     return growth * side < 0.0 ? 0.0 : growth;
   }
-
-  double side_;
 };
 
 }  // namespace

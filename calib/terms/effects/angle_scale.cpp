@@ -9,25 +9,23 @@ namespace {
 // centre, comes first.
 class AngleScale final : public LidarEffect {
  public:
-  explicit AngleScale(bool all_round) : all_round_(all_round) {}
-  [[nodiscard]] std::string name() const override { return "angle_scale"; }
-  [[nodiscard]] std::string covariate() const override { return "bearing"; }
-  [[nodiscard]] std::vector<LidarParameter> parameters() const override {
-    return {{"epsilon", "1", 5e-4, 0.1}};
+  explicit AngleScale(bool all_round) : LidarEffect(row(all_round)) {}
+
+  static LidarEffectRow row(bool all_round) {
+    return {.name = "angle_scale",
+            // Few pairs of scans, those of wide views, show what it does: most readings stay nearly where
+            // they were.
+            .may_leave = all_round ? 0.85 : 0.998,
+            .least_z = all_round ? 5.0 : 1.5,
+            .share_of_free_term = all_round ? 1.0 : LidarEffectRow{}.share_of_free_term,
+            .covariate = "bearing",
+            .parameters = {{.name = "epsilon", .unit = "1", .negligible = 5e-4, .largest = 0.1}},
+            .aliases = {"track_width"}};
   }
+
   [[nodiscard]] std::vector<BeamShift> shifts(const Sighting& sighting) const override {
     return {{0.0, sighting.bearing}};
   }
-  /// Few pairs of scans, those of wide views, show what it does: most readings stay nearly where they were.
-  [[nodiscard]] double may_leave() const override { return all_round_ ? 0.85 : 0.998; }
-  [[nodiscard]] double least_z() const override { return all_round_ ? 5.0 : 1.5; }
-  [[nodiscard]] double share_of_free_term() const override {
-    return all_round_ ? 1.0 : LidarEffect::share_of_free_term();
-  }
-  [[nodiscard]] std::vector<std::string> aliases() const override { return {"track_width"}; }
-
- private:
-  bool all_round_;
 };
 
 }  // namespace

@@ -13,31 +13,33 @@ namespace {
 class Backlash final : public StepEffect<Backlash> {
  public:
   /// @param spread over which the loss falls off exponentially, rad; 0: play
-  explicit Backlash(double spread) : spread_(spread) {}
-  [[nodiscard]] std::string name() const override { return "backlash"; }
-  [[nodiscard]] std::vector<vehicle::EffectParameter> parameters() const override {
-    return {{"left_play", "rad", 0.02, -0.3, 0.3},
-            {"right_play", "rad", 0.02, -0.3, 0.3},
-            {"spread", "rad", 1e9, 0.0, 1.0, spread_, 0.0, true}};
+  explicit Backlash(double spread) : StepEffect(row(spread)) {}
+
+  static vehicle::EffectRow row(double spread) {
+    return {.name = "backlash",
+            .parameters = {{.name = "left_play", .unit = "rad", .scale = 0.02, .lower = -0.3, .upper = 0.3},
+                           {.name = "right_play", .unit = "rad", .scale = 0.02, .lower = -0.3, .upper = 0.3},
+                           {.name = "spread",
+                            .unit = "rad",
+                            .scale = 1e9,
+                            .lower = 0.0,
+                            .upper = 1.0,
+                            .start = spread,
+                            .fixed = true}},
+            .aliases = {"time_offset", "caster_kick"},
+            .separating_motion =
+                "reversals at low and high speed; spins left and right, where the wheels reverse and the "
+                "robot does not",
+            .manoeuvre = "reversals",
+            .dependences = {{vehicle::Covariate::left_since_reversal, vehicle::Channel::left_travel},
+                            {vehicle::Covariate::right_since_reversal, vehicle::Channel::right_travel}},
+            .covariates = {vehicle::CovariateGroup::gear_play}};
   }
-  [[nodiscard]] std::vector<std::string> aliases() const override { return {"time_offset", "caster_kick"}; }
-  [[nodiscard]] std::string separating_motion() const override {
-    return "reversals at low and high speed; spins left and right, where the wheels reverse and the robot "
-           "does not";
-  }
-  [[nodiscard]] std::string manoeuvre() const override { return "reversals"; }
+
   [[nodiscard]] std::vector<std::shared_ptr<const vehicle::Effect>> variants() const override {
     std::vector<std::shared_ptr<const vehicle::Effect>> all;
     for (const double spread : {0.0, 0.05, 0.15}) all.push_back(std::make_shared<Backlash>(spread));
     return all;
-  }
-  [[nodiscard]] std::vector<vehicle::Dependence> dependences() const override {
-    return {{vehicle::Covariate::left_since_reversal, vehicle::Channel::left_travel},
-            {vehicle::Covariate::right_since_reversal, vehicle::Channel::right_travel}};
-  }
-
-  [[nodiscard]] vehicle::CovariateGroups covariates() const override {
-    return {vehicle::CovariateGroup::gear_play};
   }
 
   template <typename T>
@@ -75,8 +77,6 @@ class Backlash final : public StepEffect<Backlash> {
     const T loss = lost_before + slope * (magnitude - play_before);
     travel *= 1.0 - (plain(play) < 0.0 ? T(-loss) : loss) / delta;
   }
-
-  double spread_;
 };
 
 }  // namespace

@@ -8,17 +8,18 @@ namespace {
 // A property of the place: reported, never written back.
 class Carpet final : public StepEffect<Carpet> {
  public:
-  [[nodiscard]] std::string name() const override { return "carpet"; }
-  [[nodiscard]] std::vector<vehicle::EffectParameter> parameters() const override {
-    return {{"p_x", "1", 0.015, -0.2, 0.2}, {"p_y", "1", 0.015, -0.2, 0.2}};
-  }
-  [[nodiscard]] std::vector<std::string> aliases() const override { return {"floor_slope"}; }
-  [[nodiscard]] std::string separating_motion() const override { return "straight lines on four headings"; }
-  [[nodiscard]] std::string manoeuvre() const override { return "headings"; }
-  [[nodiscard]] vehicle::Storage storage() const override { return vehicle::Storage::nowhere; }
-  [[nodiscard]] std::vector<vehicle::Dependence> dependences() const override {
-    return {{vehicle::Covariate::heading, vehicle::Channel::both_path},
-            {vehicle::Covariate::heading, vehicle::Channel::sideways_path}};
+  Carpet() : StepEffect(row()) {}
+
+  static vehicle::EffectRow row() {
+    return {.name = "carpet",
+            .parameters = {{.name = "p_x", .unit = "1", .scale = 0.015, .lower = -0.2, .upper = 0.2},
+                           {.name = "p_y", .unit = "1", .scale = 0.015, .lower = -0.2, .upper = 0.2}},
+            .aliases = {"floor_slope"},
+            .separating_motion = "straight lines on four headings",
+            .manoeuvre = "headings",
+            .dependences = {{vehicle::Covariate::heading, vehicle::Channel::both_path},
+                            {vehicle::Covariate::heading, vehicle::Channel::sideways_path}},
+            .storage = vehicle::Storage::nowhere};
   }
 
   template <typename T>

@@ -13,21 +13,42 @@ namespace {
 // settled (order 0).
 class CasterKick final : public StepEffect<CasterKick> {
  public:
-  CasterKick(double length, double order, double lean = 0.0) : length_(length), order_(order), lean_(lean) {}
-  [[nodiscard]] std::string name() const override { return "caster_kick"; }
-  [[nodiscard]] std::vector<vehicle::EffectParameter> parameters() const override {
-    return {{"kappa", "rad", 0.01, -0.2, 0.2},
-            {"kappa_turn", "rad", 0.01, -0.2, 0.2},
-            {"kappa_side", "rad", 0.01, -0.2, 0.2},
-            {"length", "m", 1e9, 0.005, 1.0, length_, 0.0, order_ == 0.0},
-            {"order", "1", 1e9, 0.0, 2.0, order_, 0.0, true},
-            {"lean", "rad", 1e9, -0.1, 0.1, lean_, 0.0, true}};
+  CasterKick(double length, double order, double lean = 0.0) : StepEffect(row(length, order, lean)) {}
+
+  static vehicle::EffectRow row(double length, double order, double lean) {
+    return {.name = "caster_kick",
+            .parameters = {{.name = "kappa", .unit = "rad", .scale = 0.01, .lower = -0.2, .upper = 0.2},
+                           {.name = "kappa_turn", .unit = "rad", .scale = 0.01, .lower = -0.2, .upper = 0.2},
+                           {.name = "kappa_side", .unit = "rad", .scale = 0.01, .lower = -0.2, .upper = 0.2},
+                           {.name = "length",
+                            .unit = "m",
+                            .scale = 1e9,
+                            .lower = 0.005,
+                            .upper = 1.0,
+                            .start = length,
+                            .fixed = order == 0.0},
+                           {.name = "order",
+                            .unit = "1",
+                            .scale = 1e9,
+                            .lower = 0.0,
+                            .upper = 2.0,
+                            .start = order,
+                            .fixed = true},
+                           {.name = "lean",
+                            .unit = "rad",
+                            .scale = 1e9,
+                            .lower = -0.1,
+                            .upper = 0.1,
+                            .start = lean,
+                            .fixed = true}},
+            .aliases = {"backlash", "time_offset"},
+            .separating_motion =
+                "reversals straight after a left and after a right arc, and long straights after a reversal",
+            .manoeuvre = "reversals",
+            .dependences = {{vehicle::Covariate::since_reversal, vehicle::Channel::yaw_path}},
+            .covariates = {vehicle::CovariateGroup::caster, vehicle::CovariateGroup::previous_turn}};
   }
-  [[nodiscard]] std::vector<std::string> aliases() const override { return {"backlash", "time_offset"}; }
-  [[nodiscard]] std::string separating_motion() const override {
-    return "reversals straight after a left and after a right arc, and long straights after a reversal";
-  }
-  [[nodiscard]] std::string manoeuvre() const override { return "reversals"; }
+
   [[nodiscard]] std::vector<std::shared_ptr<const vehicle::Effect>> variants() const override {
     std::vector<std::shared_ptr<const vehicle::Effect>> all;
     for (const double length : {0.04, 0.08, 0.15}) all.push_back(std::make_shared<CasterKick>(length, 1.0));
@@ -36,13 +57,6 @@ class CasterKick final : public StepEffect<CasterKick> {
       for (const double lean : vehicle::kCasterLeans)
         all.push_back(std::make_shared<CasterKick>(length, 0.0, lean));
     return all;
-  }
-  [[nodiscard]] std::vector<vehicle::Dependence> dependences() const override {
-    return {{vehicle::Covariate::since_reversal, vehicle::Channel::yaw_path}};
-  }
-
-  [[nodiscard]] vehicle::CovariateGroups covariates() const override {
-    return {vehicle::CovariateGroup::caster, vehicle::CovariateGroup::previous_turn};
   }
 
   template <typename T>
@@ -63,10 +77,6 @@ class CasterKick final : public StepEffect<CasterKick> {
     return vehicle::nearest_of(vehicle::kCasterTrails, trail) * vehicle::kCasterLeans.size() +
            vehicle::nearest_of(vehicle::kCasterLeans, lean);
   }
-
-  double length_;
-  double order_;
-  double lean_;
 };
 
 }  // namespace

@@ -9,16 +9,17 @@ namespace {
 /// mistaken for a constant offset.
 class ClockDrift final : public vehicle::Effect {
  public:
-  [[nodiscard]] std::string name() const override { return "clock_drift"; }
-  [[nodiscard]] std::vector<vehicle::EffectParameter> parameters() const override {
-    return {{"rate", "s/s", 1e-4, -0.1, 0.1}};
+  ClockDrift() : Effect(row()) {}
+
+  static vehicle::EffectRow row() {
+    return {.name = "clock_drift",
+            .parameters = {{.name = "rate", .unit = "s/s", .scale = 1e-4, .lower = -0.1, .upper = 0.1}},
+            .aliases = {"time_offset"},
+            .separating_motion = "five minutes or more with accelerations spread over the whole run",
+            .storage = vehicle::Storage::driver,
+            .clock_part = vehicle::ClockPart::rate};
   }
-  [[nodiscard]] std::vector<std::string> aliases() const override { return {"time_offset"}; }
-  [[nodiscard]] std::string separating_motion() const override {
-    return "five minutes or more with accelerations spread over the whole run";
-  }
-  [[nodiscard]] vehicle::Storage storage() const override { return vehicle::Storage::driver; }
-  [[nodiscard]] vehicle::ClockPart clock_part() const override { return vehicle::ClockPart::rate; }
+
   [[nodiscard]] double delay(double time, std::span<const double> p) const override { return p[0] * time; }
   [[nodiscard]] vehicle::Jet delay(double time, std::span<const vehicle::Jet> p) const override {
     return p[0] * time;

@@ -8,25 +8,22 @@ namespace {
 // [backward]). Without backward motion it does not exist: the diameters absorb it.
 class DirectionDependentDiameter final : public StepEffect<DirectionDependentDiameter> {
  public:
-  [[nodiscard]] std::string name() const override { return "direction_dependent_diameter"; }
-  [[nodiscard]] std::vector<vehicle::EffectParameter> parameters() const override {
-    return {{"left_kappa", "1", 5e-3, -0.2, 0.2}, {"right_kappa", "1", 5e-3, -0.2, 0.2}};
-  }
-  [[nodiscard]] std::vector<std::string> aliases() const override {
-    return {"turn_direction_asymmetry", "scan_skew"};
-  }
-  [[nodiscard]] std::string separating_motion() const override {
-    return "straight lines forward and backward at the same speed, and spins both ways";
-  }
-  [[nodiscard]] std::string manoeuvre() const override { return "straights"; }
-  [[nodiscard]] std::vector<vehicle::Dependence> dependences() const override {
-    return {vehicle::kOfEachWheel,
-            {vehicle::Covariate::left_speed, vehicle::Channel::left_travel},
-            {vehicle::Covariate::right_speed, vehicle::Channel::right_travel},
-            {vehicle::Covariate::speed, vehicle::Channel::both_travel},
-            {vehicle::Covariate::left_since_reversal, vehicle::Channel::left_travel},
-            {vehicle::Covariate::right_since_reversal, vehicle::Channel::right_travel},
-            {vehicle::Covariate::since_reversal, vehicle::Channel::both_travel}};
+  DirectionDependentDiameter() : StepEffect(row()) {}
+
+  static vehicle::EffectRow row() {
+    return {.name = "direction_dependent_diameter",
+            .parameters = {{.name = "left_kappa", .unit = "1", .scale = 5e-3, .lower = -0.2, .upper = 0.2},
+                           {.name = "right_kappa", .unit = "1", .scale = 5e-3, .lower = -0.2, .upper = 0.2}},
+            .aliases = {"turn_direction_asymmetry", "scan_skew"},
+            .separating_motion = "straight lines forward and backward at the same speed, and spins both ways",
+            .manoeuvre = "straights",
+            .dependences = {vehicle::kOfEachWheel,
+                            {vehicle::Covariate::left_speed, vehicle::Channel::left_travel},
+                            {vehicle::Covariate::right_speed, vehicle::Channel::right_travel},
+                            {vehicle::Covariate::speed, vehicle::Channel::both_travel},
+                            {vehicle::Covariate::left_since_reversal, vehicle::Channel::left_travel},
+                            {vehicle::Covariate::right_since_reversal, vehicle::Channel::right_travel},
+                            {vehicle::Covariate::since_reversal, vehicle::Channel::both_travel}}};
   }
 
   template <typename T>

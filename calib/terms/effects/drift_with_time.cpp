@@ -9,29 +9,34 @@ namespace {
 // makes it linear.
 class DriftWithTime final : public StepEffect<DriftWithTime> {
  public:
-  explicit DriftWithTime(double time_constant) : time_constant_(time_constant) {}
-  [[nodiscard]] std::string name() const override { return "drift_with_time"; }
-  [[nodiscard]] std::vector<vehicle::EffectParameter> parameters() const override {
-    return {{"common", "1/(100 s)", 1e-3, -0.2, 0.2},
-            {"differential", "1/(100 s)", 1e-3, -0.2, 0.2},
-            {"time_constant", "s", 1e9, 1.0, 1e6, time_constant_, 0.0, true}};
+  explicit DriftWithTime(double time_constant) : StepEffect(row(time_constant)) {}
+
+  static vehicle::EffectRow row(double time_constant) {
+    return {
+        .name = "drift_with_time",
+        .parameters =
+            {{.name = "common", .unit = "1/(100 s)", .scale = 1e-3, .lower = -0.2, .upper = 0.2},
+             {.name = "differential", .unit = "1/(100 s)", .scale = 1e-3, .lower = -0.2, .upper = 0.2},
+             {.name = "time_constant",
+              .unit = "s",
+              .scale = 1e9,
+              .lower = 1.0,
+              .upper = 1e6,
+              .start = time_constant,
+              .fixed = true}},
+        .separating_motion = "the same manoeuvres at the beginning, in the middle and at the end of the run",
+        .dependences = {{vehicle::Covariate::time, vehicle::Channel::left_travel},
+                        {vehicle::Covariate::time, vehicle::Channel::right_travel},
+                        {vehicle::Covariate::time, vehicle::Channel::both_travel}},
+        .storage = vehicle::Storage::nowhere,
+        .carries_over = true};
   }
-  [[nodiscard]] std::vector<std::string> aliases() const override { return {}; }
-  [[nodiscard]] std::string separating_motion() const override {
-    return "the same manoeuvres at the beginning, in the middle and at the end of the run";
-  }
-  [[nodiscard]] vehicle::Storage storage() const override { return vehicle::Storage::nowhere; }
-  [[nodiscard]] bool carries_over() const override { return true; }
+
   [[nodiscard]] std::vector<std::shared_ptr<const vehicle::Effect>> variants() const override {
     std::vector<std::shared_ptr<const vehicle::Effect>> all;
     for (const double time_constant : {1e5, 120.0, 40.0})
       all.push_back(std::make_shared<DriftWithTime>(time_constant));
     return all;
-  }
-  [[nodiscard]] std::vector<vehicle::Dependence> dependences() const override {
-    return {{vehicle::Covariate::time, vehicle::Channel::left_travel},
-            {vehicle::Covariate::time, vehicle::Channel::right_travel},
-            {vehicle::Covariate::time, vehicle::Channel::both_travel}};
   }
 
   template <typename T>
@@ -43,7 +48,6 @@ class DriftWithTime final : public StepEffect<DriftWithTime> {
   }
 
  private:
-  double time_constant_;
 };
 
 }  // namespace

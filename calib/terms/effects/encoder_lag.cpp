@@ -9,15 +9,16 @@ namespace {
 /// The lag that both have is time_offset's.
 class EncoderLag final : public StepEffect<EncoderLag> {
  public:
-  [[nodiscard]] std::string name() const override { return "encoder_lag"; }
-  [[nodiscard]] std::vector<vehicle::EffectParameter> parameters() const override {
-    return {{"left_less_right", "s", 5e-3, -0.2, 0.2}};
+  EncoderLag() : StepEffect(row()) {}
+
+  static vehicle::EffectRow row() {
+    return {
+        .name = "encoder_lag",
+        .parameters = {{.name = "left_less_right", .unit = "s", .scale = 5e-3, .lower = -0.2, .upper = 0.2}},
+        .aliases = {"backlash", "time_offset"},
+        .separating_motion = "straight lines and turns on the spot with quick starts, without reversing",
+        .manoeuvre = "accelerations"};
   }
-  [[nodiscard]] std::vector<std::string> aliases() const override { return {"backlash", "time_offset"}; }
-  [[nodiscard]] std::string separating_motion() const override {
-    return "straight lines and turns on the spot with quick starts, without reversing";
-  }
-  [[nodiscard]] std::string manoeuvre() const override { return "accelerations"; }
 
   template <typename T>
   static void act(const vehicle::StepContext& c, std::span<const T> p, vehicle::WheelStep<T>& step) {

@@ -8,18 +8,17 @@ namespace {
 // A property of the place: reported, never written back.
 class FloorSlope final : public StepEffect<FloorSlope> {
  public:
-  [[nodiscard]] std::string name() const override { return "floor_slope"; }
-  [[nodiscard]] std::vector<vehicle::EffectParameter> parameters() const override {
-    return {{"kappa_x", "1", 0.015, -0.1, 0.1}, {"kappa_y", "1", 0.015, -0.1, 0.1}};
-  }
-  [[nodiscard]] std::vector<std::string> aliases() const override { return {"carpet"}; }
-  [[nodiscard]] std::string separating_motion() const override {
-    return "straight lines on four headings, forward and backward on each";
-  }
-  [[nodiscard]] std::string manoeuvre() const override { return "headings"; }
-  [[nodiscard]] vehicle::Storage storage() const override { return vehicle::Storage::nowhere; }
-  [[nodiscard]] std::vector<vehicle::Dependence> dependences() const override {
-    return {{vehicle::Covariate::heading, vehicle::Channel::both_path}};
+  FloorSlope() : StepEffect(row()) {}
+
+  static vehicle::EffectRow row() {
+    return {.name = "floor_slope",
+            .parameters = {{.name = "kappa_x", .unit = "1", .scale = 0.015, .lower = -0.1, .upper = 0.1},
+                           {.name = "kappa_y", .unit = "1", .scale = 0.015, .lower = -0.1, .upper = 0.1}},
+            .aliases = {"carpet"},
+            .separating_motion = "straight lines on four headings, forward and backward on each",
+            .manoeuvre = "headings",
+            .dependences = {{vehicle::Covariate::heading, vehicle::Channel::both_path}},
+            .storage = vehicle::Storage::nowhere};
   }
 
   template <typename T>

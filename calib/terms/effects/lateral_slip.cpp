@@ -8,31 +8,32 @@ namespace {
 // angle, dy = -k_tyre |v| omega ds; both may lag by the way over which a tyre takes up its slip angle.
 class LateralSlip final : public StepEffect<LateralSlip> {
  public:
-  explicit LateralSlip(double relaxation) : relaxation_(relaxation) {}
-  [[nodiscard]] std::string name() const override { return "lateral_slip"; }
-  [[nodiscard]] std::vector<vehicle::EffectParameter> parameters() const override {
-    return {{"k", "s", 0.01, -0.2, 0.2},
-            {"k_tyre", "s^2/m", 0.01, -0.5, 0.5},
-            {"relaxation", "m", 1e9, 0.0, 1.0, relaxation_, 0.0, true}};
+  explicit LateralSlip(double relaxation) : StepEffect(row(relaxation)) {}
+
+  static vehicle::EffectRow row(double relaxation) {
+    return {.name = "lateral_slip",
+            .parameters = {{.name = "k", .unit = "s", .scale = 0.01, .lower = -0.2, .upper = 0.2},
+                           {.name = "k_tyre", .unit = "s^2/m", .scale = 0.01, .lower = -0.5, .upper = 0.5},
+                           {.name = "relaxation",
+                            .unit = "m",
+                            .scale = 1e9,
+                            .lower = 0.0,
+                            .upper = 1.0,
+                            .start = relaxation,
+                            .fixed = true}},
+            .aliases = {"toe", "icr_offset"},
+            .separating_motion = "arcs left and right, forward and backward, at two speeds and two radii",
+            .manoeuvre = "arcs",
+            .dependences = {{vehicle::Covariate::lateral_acceleration, vehicle::Channel::sideways_path},
+                            {vehicle::Covariate::lateral_acceleration, vehicle::Channel::sideways},
+                            {vehicle::Covariate::turn_rate, vehicle::Channel::sideways}},
+            .covariates = {vehicle::CovariateGroup::tyre_relaxation}};
   }
-  [[nodiscard]] std::vector<std::string> aliases() const override { return {"toe", "icr_offset"}; }
-  [[nodiscard]] std::string separating_motion() const override {
-    return "arcs left and right, forward and backward, at two speeds and two radii";
-  }
-  [[nodiscard]] std::string manoeuvre() const override { return "arcs"; }
+
   [[nodiscard]] std::vector<std::shared_ptr<const vehicle::Effect>> variants() const override {
     std::vector<std::shared_ptr<const vehicle::Effect>> all = {std::make_shared<LateralSlip>(0.0)};
     for (const double way : vehicle::kRelaxations) all.push_back(std::make_shared<LateralSlip>(way));
     return all;
-  }
-  [[nodiscard]] std::vector<vehicle::Dependence> dependences() const override {
-    return {{vehicle::Covariate::lateral_acceleration, vehicle::Channel::sideways_path},
-            {vehicle::Covariate::lateral_acceleration, vehicle::Channel::sideways},
-            {vehicle::Covariate::turn_rate, vehicle::Channel::sideways}};
-  }
-
-  [[nodiscard]] vehicle::CovariateGroups covariates() const override {
-    return {vehicle::CovariateGroup::tyre_relaxation};
   }
 
   template <typename T>
@@ -47,7 +48,6 @@ class LateralSlip final : public StepEffect<LateralSlip> {
   }
 
  private:
-  double relaxation_;
 };
 
 }  // namespace

@@ -10,12 +10,16 @@ namespace {
 // scan shows, and a^2/4 cos 2(bearing - b): the two parameters are its cosine and sine parts.
 class LidarTilt final : public LidarEffect {
  public:
-  [[nodiscard]] std::string name() const override { return "lidar_tilt"; }
-  [[nodiscard]] std::string covariate() const override { return "bearing"; }
-  [[nodiscard]] std::vector<LidarParameter> parameters() const override {
+  LidarTilt() : LidarEffect(row()) {}
+
+  static LidarEffectRow row() {
     constexpr double kNegligible = 2.5e-4;  // 1.8 degrees
-    return {{"stretch_cos", "1", kNegligible, 0.02}, {"stretch_sin", "1", kNegligible, 0.02}};
+    return {.name = "lidar_tilt",
+            .covariate = "bearing",
+            .parameters = {{.name = "stretch_cos", .unit = "1", .negligible = kNegligible, .largest = 0.02},
+                           {.name = "stretch_sin", .unit = "1", .negligible = kNegligible, .largest = 0.02}}};
   }
+
   [[nodiscard]] std::vector<BeamShift> shifts(const Sighting& s) const override {
     return {{s.range * std::cos(2.0 * s.bearing), 0.0}, {s.range * std::sin(2.0 * s.bearing), 0.0}};
   }

@@ -8,16 +8,19 @@ namespace {
 // amount that changes with the size of the room.
 class RangeBias final : public LidarEffect {
  public:
-  [[nodiscard]] std::string name() const override { return "range_bias"; }
-  [[nodiscard]] bool is_judged_in_map() const override { return true; }
-  [[nodiscard]] std::string covariate() const override { return "range"; }
-  [[nodiscard]] std::vector<LidarParameter> parameters() const override {
-    return {{"offset", "m", 0.008, 0.2}};
+  RangeBias() : LidarEffect(row()) {}
+
+  static LidarEffectRow row() {
+    return {.name = "range_bias",
+            .is_judged_in_map = true,
+            .covariate = "range",
+            .parameters = {{.name = "offset", .unit = "m", .negligible = 0.008, .largest = 0.2}},
+            .aliases = {"range_scale"}};
   }
+
   [[nodiscard]] std::vector<BeamShift> shifts(const Sighting& /*sighting*/) const override {
     return {{1.0, 0.0}};
   }
-  [[nodiscard]] std::vector<std::string> aliases() const override { return {"range_scale"}; }
 };
 
 }  // namespace

@@ -9,27 +9,21 @@ namespace {
 // left and right turns.
 class ScanSkew final : public StepEffect<ScanSkew> {
  public:
-  [[nodiscard]] std::string name() const override { return "scan_skew"; }
-  [[nodiscard]] std::vector<vehicle::EffectParameter> parameters() const override {
-    return {{"c", "s", 5e-3, -0.1, 0.1}};
-  }
-  [[nodiscard]] std::vector<std::string> aliases() const override {
-    return {"turn_direction_asymmetry", "direction_dependent_diameter"};
-  }
-  [[nodiscard]] std::string separating_motion() const override {
-    return "turns left and right at two or more rates of at least 1:3, and single-wheel turns";
-  }
-  [[nodiscard]] std::string manoeuvre() const override { return "turns"; }
-  [[nodiscard]] std::vector<vehicle::Dependence> dependences() const override {
-    return {{vehicle::Covariate::turn_rate, vehicle::Channel::track}};
-  }
-  [[nodiscard]] bool bends_scans() const override { return true; }
-  /// Scans whose beams were sent at other times than stated are bent by turning, and matches of them find
-  /// other ways the faster the robot drives and turns: what looks like a term of turning is no more the
-  /// wheels'.
-  [[nodiscard]] bool excludes(const vehicle::Dependence& dependence) const override {
-    return dependence.covariate == vehicle::Covariate::lateral_acceleration ||
-           dependence.covariate == vehicle::Covariate::turn_rate;
+  ScanSkew() : StepEffect(row()) {}
+
+  static vehicle::EffectRow row() {
+    return {.name = "scan_skew",
+            .parameters = {{.name = "c", .unit = "s", .scale = 5e-3, .lower = -0.1, .upper = 0.1}},
+            .aliases = {"turn_direction_asymmetry", "direction_dependent_diameter"},
+            .separating_motion =
+                "turns left and right at two or more rates of at least 1:3, and single-wheel turns",
+            .manoeuvre = "turns",
+            .dependences = {{vehicle::Covariate::turn_rate, vehicle::Channel::track}},
+            // Scans whose beams were sent at other times than stated are bent by turning, and matches of them
+            // find other ways the faster the robot drives and turns: what looks like a term of turning is no
+            // more the wheels'.
+            .excluded_covariates = {vehicle::Covariate::lateral_acceleration, vehicle::Covariate::turn_rate},
+            .bends_scans = true};
   }
 
   template <typename T>

@@ -11,30 +11,34 @@ namespace {
 class SpeedDependentRadius final : public StepEffect<SpeedDependentRadius> {
  public:
   /// @param half_speed at which half of the growth is reached, m/s; 0: the textbook's function
-  explicit SpeedDependentRadius(double half_speed) : half_speed_(half_speed) {}
-  [[nodiscard]] std::string name() const override { return "speed_dependent_radius"; }
-  [[nodiscard]] std::vector<vehicle::EffectParameter> parameters() const override {
-    return {{"kappa", "s/m", 0.01, -1.0, 1.0}, {"half_speed", "m/s", 1e9, 0.0, 10.0, half_speed_, 0.0, true}};
+  explicit SpeedDependentRadius(double half_speed) : StepEffect(row(half_speed)) {}
+
+  static vehicle::EffectRow row(double half_speed) {
+    return {.name = "speed_dependent_radius",
+            .parameters = {{.name = "kappa", .unit = "s/m", .scale = 0.01, .lower = -1.0, .upper = 1.0},
+                           {.name = "half_speed",
+                            .unit = "m/s",
+                            .scale = 1e9,
+                            .lower = 0.0,
+                            .upper = 10.0,
+                            .start = half_speed,
+                            .fixed = true}},
+            .aliases = {"track_depends_on_motion", "tick_loss"},
+            .separating_motion =
+                "straight lines at three speeds over 1:3, and spins whose wheel speeds overlap those of the "
+                "straights",
+            .manoeuvre = "straights",
+            .dependences = {vehicle::kOfEachWheel,
+                            {vehicle::Covariate::left_speed, vehicle::Channel::left_travel},
+                            {vehicle::Covariate::right_speed, vehicle::Channel::right_travel},
+                            {vehicle::Covariate::speed, vehicle::Channel::both_travel}}};
   }
-  [[nodiscard]] std::vector<std::string> aliases() const override {
-    return {"track_depends_on_motion", "tick_loss"};
-  }
-  [[nodiscard]] std::string separating_motion() const override {
-    return "straight lines at three speeds over 1:3, and spins whose wheel speeds overlap those of the "
-           "straights";
-  }
-  [[nodiscard]] std::string manoeuvre() const override { return "straights"; }
+
   [[nodiscard]] std::vector<std::shared_ptr<const vehicle::Effect>> variants() const override {
     std::vector<std::shared_ptr<const vehicle::Effect>> all;
     for (const double half_speed : {0.0, 0.1, 0.2, 0.4, 0.8})
       all.push_back(std::make_shared<SpeedDependentRadius>(half_speed));
     return all;
-  }
-  [[nodiscard]] std::vector<vehicle::Dependence> dependences() const override {
-    return {vehicle::kOfEachWheel,
-            {vehicle::Covariate::left_speed, vehicle::Channel::left_travel},
-            {vehicle::Covariate::right_speed, vehicle::Channel::right_travel},
-            {vehicle::Covariate::speed, vehicle::Channel::both_travel}};
   }
 
   template <typename T>
@@ -49,8 +53,6 @@ class SpeedDependentRadius final : public StepEffect<SpeedDependentRadius> {
     if (!(plain(half_speed) > 0.0)) return T(speed);
     return half_speed * speed * speed / (speed * speed + half_speed * half_speed);
   }
-
-  double half_speed_;
 };
 
 }  // namespace

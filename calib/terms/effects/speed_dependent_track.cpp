@@ -7,19 +7,15 @@ namespace {
 // Wide soft contacts and casters change the effective track width with the turn rate: b (1 + kappa |omega|).
 class SpeedDependentTrack final : public StepEffect<SpeedDependentTrack> {
  public:
-  [[nodiscard]] std::string name() const override { return "speed_dependent_track"; }
-  [[nodiscard]] std::vector<vehicle::EffectParameter> parameters() const override {
-    return {{"kappa", "s/rad", 0.01, -0.2, 0.2}};
-  }
-  [[nodiscard]] std::vector<std::string> aliases() const override {
-    return {"track_depends_on_motion", "speed_dependent_radius"};
-  }
-  [[nodiscard]] std::string separating_motion() const override {
-    return "spins at three rates, and arcs at the same turn rate and different speeds";
-  }
-  [[nodiscard]] std::string manoeuvre() const override { return "turns"; }
-  [[nodiscard]] std::vector<vehicle::Dependence> dependences() const override {
-    return {{vehicle::Covariate::turn_rate, vehicle::Channel::track}};
+  SpeedDependentTrack() : StepEffect(row()) {}
+
+  static vehicle::EffectRow row() {
+    return {.name = "speed_dependent_track",
+            .parameters = {{.name = "kappa", .unit = "s/rad", .scale = 0.01, .lower = -0.2, .upper = 0.2}},
+            .aliases = {"track_depends_on_motion", "speed_dependent_radius"},
+            .separating_motion = "spins at three rates, and arcs at the same turn rate and different speeds",
+            .manoeuvre = "turns",
+            .dependences = {{vehicle::Covariate::turn_rate, vehicle::Channel::track}}};
   }
 
   template <typename T>

@@ -10,11 +10,13 @@ namespace odomcalib::calib::terms {
 inline double plain(double value) { return value; }
 inline double plain(const vehicle::Jet& value) { return value.a; }
 
-/// Derived supplies `template <typename T> void act(const StepContext&, std::span<const T> p,
-/// WheelStep<T>&)`, static or const.
+/// Derived hands the row of the effect to the constructor, and supplies `template <typename T> void act(const
+/// StepContext&, std::span<const T> p, WheelStep<T>&)`, static or const.
 template <typename Derived>
 class StepEffect : public vehicle::Effect {
  public:
+  using vehicle::Effect::Effect;
+
   void apply(const vehicle::StepContext& context, std::span<const double> parameters,
              vehicle::WheelStep<double>& step) const final {
     static_cast<const Derived&>(*this).template act<double>(context, parameters, step);

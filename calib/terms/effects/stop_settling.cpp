@@ -12,32 +12,40 @@ class StopSettling final : public StepEffect<StopSettling> {
   /// @param lasting whether a turn stays wound up until another
   /// @param speed at which the sizes are stated where they grow with the speed before the stop, m/s; 0: they
   /// do not
-  StopSettling(bool lasting, double speed) : lasting_(lasting), speed_(speed) {}
-  [[nodiscard]] std::string name() const override { return "stop_settling"; }
-  [[nodiscard]] std::vector<vehicle::EffectParameter> parameters() const override {
-    return {{"turn", "rad", 0.005, -0.2, 0.2},
-            {"way", "m", 0.005, -0.1, 0.1},
-            {"lasting", "1", 1e9, 0.0, 1.0, lasting_ ? 1.0 : 0.0, 0.0, true},
-            {"speed", "m/s", 1e9, 0.0, 10.0, speed_, 0.0, true}};
+  StopSettling(bool lasting, double speed) : StepEffect(row(lasting, speed)) {}
+
+  static vehicle::EffectRow row(bool lasting, double speed) {
+    return {.name = "stop_settling",
+            .parameters = {{.name = "turn", .unit = "rad", .scale = 0.005, .lower = -0.2, .upper = 0.2},
+                           {.name = "way", .unit = "m", .scale = 0.005, .lower = -0.1, .upper = 0.1},
+                           {.name = "lasting",
+                            .unit = "1",
+                            .scale = 1e9,
+                            .lower = 0.0,
+                            .upper = 1.0,
+                            .start = lasting ? 1.0 : 0.0,
+                            .fixed = true},
+                           {.name = "speed",
+                            .unit = "m/s",
+                            .scale = 1e9,
+                            .lower = 0.0,
+                            .upper = 10.0,
+                            .start = speed,
+                            .fixed = true}},
+            .aliases = {"backlash", "time_offset"},
+            .separating_motion =
+                "many stops, after straights and after turns on the spot, beside reversals without one",
+            .manoeuvre = "reversals",
+            .dependences = {{vehicle::Covariate::since_stop, vehicle::Channel::both_travel},
+                            {vehicle::Covariate::since_stop, vehicle::Channel::yaw_path}},
+            .covariates = {vehicle::CovariateGroup::stops, vehicle::CovariateGroup::winding}};
   }
-  [[nodiscard]] std::vector<std::string> aliases() const override { return {"backlash", "time_offset"}; }
-  [[nodiscard]] std::string separating_motion() const override {
-    return "many stops, after straights and after turns on the spot, beside reversals without one";
-  }
-  [[nodiscard]] std::string manoeuvre() const override { return "reversals"; }
+
   [[nodiscard]] std::vector<std::shared_ptr<const vehicle::Effect>> variants() const override {
     std::vector<std::shared_ptr<const vehicle::Effect>> all;
     for (const bool lasting : {false, true})
       for (const double speed : {0.0, kSpeed}) all.push_back(std::make_shared<StopSettling>(lasting, speed));
     return all;
-  }
-  [[nodiscard]] std::vector<vehicle::Dependence> dependences() const override {
-    return {{vehicle::Covariate::since_stop, vehicle::Channel::both_travel},
-            {vehicle::Covariate::since_stop, vehicle::Channel::yaw_path}};
-  }
-
-  [[nodiscard]] vehicle::CovariateGroups covariates() const override {
-    return {vehicle::CovariateGroup::stops, vehicle::CovariateGroup::winding};
   }
 
   template <typename T>
@@ -53,9 +61,6 @@ class StopSettling final : public StepEffect<StopSettling> {
 
  private:
   static constexpr double kSpeed = 0.3;
-
-  bool lasting_;
-  double speed_;
 };
 
 }  // namespace

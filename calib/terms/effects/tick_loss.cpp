@@ -8,31 +8,35 @@ namespace {
 /// a width: that over which the smoothed speed changes anyway, or more.
 class TickLoss final : public StepEffect<TickLoss> {
  public:
-  explicit TickLoss(double threshold) : threshold_(threshold) {}
-  [[nodiscard]] std::string name() const override { return "tick_loss"; }
-  [[nodiscard]] std::vector<vehicle::EffectParameter> parameters() const override {
-    return {{"left_kappa", "1", 0.01, -0.3, 0.3},
-            {"right_kappa", "1", 0.01, -0.3, 0.3},
-            {"threshold", "m/s", 1e9, 0.02, 5.0, threshold_},
-            {"width", "m/s", 1e9, -0.2, 0.2, kWidth}};
+  explicit TickLoss(double threshold) : StepEffect(row(threshold)) {}
+
+  static vehicle::EffectRow row(double threshold) {
+    return {
+        .name = "tick_loss",
+        .parameters =
+            {{.name = "left_kappa", .unit = "1", .scale = 0.01, .lower = -0.3, .upper = 0.3},
+             {.name = "right_kappa", .unit = "1", .scale = 0.01, .lower = -0.3, .upper = 0.3},
+             {.name = "threshold",
+              .unit = "m/s",
+              .scale = 1e9,
+              .lower = 0.02,
+              .upper = 5.0,
+              .start = threshold},
+             {.name = "width", .unit = "m/s", .scale = 1e9, .lower = -0.2, .upper = 0.2, .start = kWidth}},
+        .aliases = {"speed_dependent_radius", "track_depends_on_motion"},
+        .separating_motion =
+            "straight lines above and below the threshold, and spins whose wheel speed stays below it",
+        .manoeuvre = "straights",
+        .dependences = {vehicle::kOfEachWheel,
+                        {vehicle::Covariate::left_speed, vehicle::Channel::left_travel},
+                        {vehicle::Covariate::right_speed, vehicle::Channel::right_travel}}};
   }
-  [[nodiscard]] std::vector<std::string> aliases() const override {
-    return {"speed_dependent_radius", "track_depends_on_motion"};
-  }
-  [[nodiscard]] std::string separating_motion() const override {
-    return "straight lines above and below the threshold, and spins whose wheel speed stays below it";
-  }
-  [[nodiscard]] std::string manoeuvre() const override { return "straights"; }
+
   [[nodiscard]] std::vector<std::shared_ptr<const vehicle::Effect>> variants() const override {
     std::vector<std::shared_ptr<const vehicle::Effect>> all;
     for (const double threshold : {0.1, 0.14, 0.19, 0.25, 0.32, 0.4, 0.5, 0.7, 1.0, 1.5})
       all.push_back(std::make_shared<TickLoss>(threshold));
     return all;
-  }
-  [[nodiscard]] std::vector<vehicle::Dependence> dependences() const override {
-    return {vehicle::kOfEachWheel,
-            {vehicle::Covariate::left_speed, vehicle::Channel::left_travel},
-            {vehicle::Covariate::right_speed, vehicle::Channel::right_travel}};
   }
 
   template <typename T>
@@ -53,7 +57,6 @@ class TickLoss final : public StepEffect<TickLoss> {
     const T steps = (threshold - speed) / sqrt(width * width + kSharpest * kSharpest);
     return 1.0 / (1.0 + exp(steps));
   }
-  double threshold_;
 };
 
 }  // namespace

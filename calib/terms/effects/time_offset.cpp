@@ -10,25 +10,29 @@ namespace {
 // of that. So dL' = dL - smoothing (aL(end) - aL(begin)), and dR' likewise; zero for a pure delay.
 class TimeOffset final : public StepEffect<TimeOffset> {
  public:
-  [[nodiscard]] std::string name() const override { return "time_offset"; }
-  [[nodiscard]] std::vector<vehicle::EffectParameter> parameters() const override {
-    return {{"offset", "s", 0.02, -1.0, 1.0},
-            {"smoothing", "s^2", kTypicalSmoothing, -0.02, 0.02, 0.0, kTypicalSmoothing, false, true}};
+  TimeOffset() : StepEffect(row()) {}
+
+  static vehicle::EffectRow row() {
+    return {.name = "time_offset",
+            .parameters = {{.name = "offset", .unit = "s", .scale = 0.02, .lower = -1.0, .upper = 1.0},
+                           {.name = "smoothing",
+                            .unit = "s^2",
+                            .scale = kTypicalSmoothing,
+                            .lower = -0.02,
+                            .upper = 0.02,
+                            .prior = kTypicalSmoothing,
+                            .of_wheels = true}},
+            .aliases = {"encoder_lag", "acceleration_slip"},
+            .observationally_equivalent = {"encoder_lag"},
+            .separating_motion =
+                "equal accelerations at low and at high speed, forward and backward; a filter in the encoder "
+                "path cannot be separated apart from a late scan",
+            .manoeuvre = "accelerations",
+            .storage = vehicle::Storage::driver,
+            .clock_part = vehicle::ClockPart::offset,
+            .covariates = {vehicle::CovariateGroup::acceleration_changes}};
   }
-  [[nodiscard]] std::vector<std::string> aliases() const override {
-    return {"encoder_lag", "acceleration_slip"};
-  }
-  [[nodiscard]] std::vector<std::string> observationally_equivalent() const override {
-    return {"encoder_lag"};
-  }
-  [[nodiscard]] std::string separating_motion() const override {
-    return "equal accelerations at low and at high speed, forward and backward; a filter in the encoder path "
-           "cannot be separated "
-           "apart from a late scan";
-  }
-  [[nodiscard]] std::string manoeuvre() const override { return "accelerations"; }
-  [[nodiscard]] vehicle::Storage storage() const override { return vehicle::Storage::driver; }
-  [[nodiscard]] vehicle::ClockPart clock_part() const override { return vehicle::ClockPart::offset; }
+
   /// A delay next to nothing with a smoothing below zero is what noise of coarse counts makes of the wheels.
   [[nodiscard]] std::string contradiction(std::span<const double> p) const override {
     const bool is_late = std::abs(p[0]) >= vehicle::settings::kNegligibleShare * parameters().front().scale;
@@ -39,10 +43,6 @@ class TimeOffset final : public StepEffect<TimeOffset> {
   }
   [[nodiscard]] vehicle::Jet delay(double /*time*/, std::span<const vehicle::Jet> parameters) const override {
     return parameters[0];
-  }
-
-  [[nodiscard]] vehicle::CovariateGroups covariates() const override {
-    return {vehicle::CovariateGroup::acceleration_changes};
   }
 
   template <typename T>

@@ -9,26 +9,29 @@ namespace {
 // by the textbook; wide and soft patches scrub sooner, narrow and hard ones later.
 class TrackDependsOnMotion final : public StepEffect<TrackDependsOnMotion> {
  public:
-  explicit TrackDependsOnMotion(double arm) : arm_(arm) {}
-  [[nodiscard]] std::string name() const override { return "track_depends_on_motion"; }
-  [[nodiscard]] std::vector<vehicle::EffectParameter> parameters() const override {
-    return {{"kappa", "1", 0.01, -0.9, 0.9}, {"arm", "tracks", 1e9, 0.0, 10.0, arm_, 0.0, true}};
+  explicit TrackDependsOnMotion(double arm) : StepEffect(row(arm)) {}
+
+  static vehicle::EffectRow row(double arm) {
+    return {.name = "track_depends_on_motion",
+            .parameters = {{.name = "kappa", .unit = "1", .scale = 0.01, .lower = -0.9, .upper = 0.9},
+                           {.name = "arm",
+                            .unit = "tracks",
+                            .scale = 1e9,
+                            .lower = 0.0,
+                            .upper = 10.0,
+                            .start = arm,
+                            .fixed = true}},
+            .aliases = {"tick_loss", "speed_dependent_radius", "speed_dependent_track"},
+            .separating_motion = "spins and arcs with equal wheel speeds",
+            .manoeuvre = "arcs",
+            .dependences = {{vehicle::Covariate::turn_rate, vehicle::Channel::track},
+                            {vehicle::Covariate::speed, vehicle::Channel::track}}};
   }
-  [[nodiscard]] std::vector<std::string> aliases() const override {
-    return {"tick_loss", "speed_dependent_radius", "speed_dependent_track"};
-  }
-  [[nodiscard]] std::string separating_motion() const override {
-    return "spins and arcs with equal wheel speeds";
-  }
-  [[nodiscard]] std::string manoeuvre() const override { return "arcs"; }
+
   [[nodiscard]] std::vector<std::shared_ptr<const vehicle::Effect>> variants() const override {
     std::vector<std::shared_ptr<const vehicle::Effect>> all;
     for (const double arm : {0.5, 0.25, 1.0, 2.0}) all.push_back(std::make_shared<TrackDependsOnMotion>(arm));
     return all;
-  }
-  [[nodiscard]] std::vector<vehicle::Dependence> dependences() const override {
-    return {{vehicle::Covariate::turn_rate, vehicle::Channel::track},
-            {vehicle::Covariate::speed, vehicle::Channel::track}};
   }
 
   template <typename T>
@@ -39,7 +42,6 @@ class TrackDependsOnMotion final : public StepEffect<TrackDependsOnMotion> {
   }
 
  private:
-  double arm_;
 };
 
 }  // namespace

@@ -8,20 +8,17 @@ namespace {
 // 0]).
 class TurnDirectionAsymmetry final : public StepEffect<TurnDirectionAsymmetry> {
  public:
-  [[nodiscard]] std::string name() const override { return "turn_direction_asymmetry"; }
-  [[nodiscard]] std::vector<vehicle::EffectParameter> parameters() const override {
-    return {{"kappa", "1", 5e-3, -0.3, 0.3}};
-  }
-  [[nodiscard]] std::vector<std::string> aliases() const override {
-    return {"scan_skew", "direction_dependent_diameter"};
-  }
-  [[nodiscard]] std::string separating_motion() const override {
-    return "turns both ways at two or more rates: skew grows with the rate, scrub does not";
-  }
-  [[nodiscard]] std::string manoeuvre() const override { return "turns"; }
-  [[nodiscard]] bool has_two_states() const override { return true; }
-  [[nodiscard]] std::vector<vehicle::Dependence> dependences() const override {
-    return {{vehicle::Covariate::turn_rate, vehicle::Channel::track}};
+  TurnDirectionAsymmetry() : StepEffect(row()) {}
+
+  static vehicle::EffectRow row() {
+    return {
+        .name = "turn_direction_asymmetry",
+        .parameters = {{.name = "kappa", .unit = "1", .scale = 5e-3, .lower = -0.3, .upper = 0.3}},
+        .aliases = {"scan_skew", "direction_dependent_diameter"},
+        .separating_motion = "turns both ways at two or more rates: skew grows with the rate, scrub does not",
+        .manoeuvre = "turns",
+        .dependences = {{vehicle::Covariate::turn_rate, vehicle::Channel::track}},
+        .has_two_states = true};
   }
 
   template <typename T>

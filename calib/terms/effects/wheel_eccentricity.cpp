@@ -13,19 +13,25 @@ enum class Side { left, right };
 /// The phase is constant over a run; between runs it is known only if the counter keeps its value.
 class WheelEccentricity final : public StepEffect<WheelEccentricity> {
  public:
-  explicit WheelEccentricity(Side side) : side_(side) {}
-  [[nodiscard]] std::string name() const override { return "wheel_eccentricity"; }
-  [[nodiscard]] std::vector<vehicle::EffectParameter> parameters() const override {
-    const std::string wheel = side_ == Side::left ? "left" : "right";
-    return {{wheel + "_cos", "1", 5e-3, -0.1, 0.1}, {wheel + "_sin", "1", 5e-3, -0.1, 0.1}};
-  }
-  [[nodiscard]] std::string separating_motion() const override {
-    return "slow straight lines of five or more wheel turns";
-  }
-  [[nodiscard]] std::string manoeuvre() const override { return "slow_straights"; }
-  [[nodiscard]] std::vector<vehicle::Dependence> dependences() const override {
-    if (side_ == Side::left) return {{vehicle::Covariate::left_phase, vehicle::Channel::left_travel}};
-    return {{vehicle::Covariate::right_phase, vehicle::Channel::right_travel}};
+  explicit WheelEccentricity(Side side) : StepEffect(row(side)), side_(side) {}
+
+  static vehicle::EffectRow row(Side side) {
+    const bool left = side == Side::left;
+    return {.name = "wheel_eccentricity",
+            .parameters = {{.name = left ? "left_cos" : "right_cos",
+                            .unit = "1",
+                            .scale = 5e-3,
+                            .lower = -0.1,
+                            .upper = 0.1},
+                           {.name = left ? "left_sin" : "right_sin",
+                            .unit = "1",
+                            .scale = 5e-3,
+                            .lower = -0.1,
+                            .upper = 0.1}},
+            .separating_motion = "slow straight lines of five or more wheel turns",
+            .manoeuvre = "slow_straights",
+            .dependences = {{left ? vehicle::Covariate::left_phase : vehicle::Covariate::right_phase,
+                             left ? vehicle::Channel::left_travel : vehicle::Channel::right_travel}}};
   }
 
   template <typename T>

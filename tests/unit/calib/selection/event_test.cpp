@@ -189,10 +189,11 @@ TEST(EventText, says_what_changed_when_and_for_which_state_the_values_stand) {
 /// The left wheel drags in one kind of motion alone: backwards and to the left.
 class Drag final : public terms::StepEffect<Drag> {
  public:
-  [[nodiscard]] std::string name() const override { return "drag"; }
-  [[nodiscard]] std::vector<vehicle::EffectParameter> parameters() const override {
-    return {{"share", "1", 0.05, -1.0, 1.0}};
-  }
+  Drag()
+      : StepEffect(
+            {.name = "drag",
+             .parameters = {{.name = "share", .unit = "1", .scale = 0.05, .lower = -1.0, .upper = 1.0}}}) {}
+
   template <typename T>
   static void act(const vehicle::StepContext& c, std::span<const T> p, vehicle::WheelStep<T>& step) {
     if (c.speed < -0.05 && c.turn_rate > 0.1) step.left *= 1.0 + p[0];
