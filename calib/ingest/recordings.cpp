@@ -9,7 +9,7 @@
 #include "calib/ingest/settings.hpp"
 #include "calib/ingest/tick_stamps.hpp"
 #include "calib/math/se2.hpp"
-#include "calib/terms/effects/factories.hpp"
+#include "calib/terms/catalogue.hpp"
 
 namespace odomcalib::calib::ingest {
 namespace {

@@ -8,6 +8,7 @@
 
 #include "calib/math/vector2.hpp"
 #include "calib/odometry/correction.hpp"
+#include "calib/terms/catalogue.hpp"
 #include "proto/base_quantities.hpp"
 
 namespace odomcalib::calib::library {

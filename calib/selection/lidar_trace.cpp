@@ -6,6 +6,7 @@
 
 #include "calib/selection/lidar_score.hpp"
 #include "calib/selection/settings.hpp"
+#include "calib/terms/catalogue.hpp"
 #include "calib/terms/lidar_smooth_term.hpp"
 #include "calib/validation/settings.hpp"
 

@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "calib/selection/settings.hpp"
+#include "calib/terms/catalogue.hpp"
 #include "calib/terms/lidar_smooth_term.hpp"
 
 namespace odomcalib::calib::selection {

@@ -15,6 +15,7 @@
 #include "calib/selection/lidar_trace.hpp"
 #include "calib/stages/placed_fit.hpp"
 #include "calib/stages/settings.hpp"
+#include "calib/terms/catalogue.hpp"
 #include "calib/validation/criterion.hpp"
 
 namespace odomcalib::calib::stages {

@@ -2,9 +2,32 @@
 
 #include <algorithm>
 
-#include "calib/terms/effects/factories.hpp"
-
 namespace odomcalib::calib::terms {
+
+using EffectPtr = std::shared_ptr<const vehicle::Effect>;
+
+// Makers of the effects, each in the file of its name in effects/; those that other code asks for are
+// declared in the header.
+EffectPtr make_time_offset();
+EffectPtr make_clock_drift();
+EffectPtr make_encoder_lag();
+EffectPtr make_wheel_eccentricity_left();
+EffectPtr make_wheel_eccentricity_right();
+EffectPtr make_tick_loss();
+EffectPtr make_backlash();
+EffectPtr make_direction_dependent_diameter();
+EffectPtr make_speed_dependent_radius();
+EffectPtr make_acceleration_slip();
+EffectPtr make_lateral_slip();
+EffectPtr make_speed_dependent_track();
+EffectPtr make_track_depends_on_motion();
+EffectPtr make_turn_direction_asymmetry();
+EffectPtr make_caster_kick();
+EffectPtr make_stop_settling();
+EffectPtr make_drift_with_time();
+EffectPtr make_floor_slope();
+EffectPtr make_carpet();
+LidarEffectPtr make_lidar_tilt();
 
 const vehicle::EffectList& effect_catalogue() {
   static const vehicle::EffectList kAll = {
@@ -52,6 +75,21 @@ vehicle::EffectList find_effects(const std::string& name) {
   std::copy_if(effect_catalogue().begin(), effect_catalogue().end(), std::back_inserter(found),
                [&](const auto& effect) { return effect->name() == name; });
   return found;
+}
+
+const std::vector<LidarEffectPtr>& lidar_catalogue(bool all_round) {
+  static const auto kAll = [](bool sees_all_round) {
+    return std::vector<LidarEffectPtr>{make_range_bias(), make_lidar_tilt(),
+                                       make_angle_scale(sees_all_round)};
+  };
+  static const std::vector<LidarEffectPtr> kAllRound = kAll(true), kOfAView = kAll(false);
+  return all_round ? kAllRound : kOfAView;
+}
+
+LidarEffectPtr find_lidar_effect(const std::string& name) {
+  for (const auto& effect : lidar_catalogue(false))
+    if (effect->name() == name) return effect;
+  return nullptr;
 }
 
 }  // namespace odomcalib::calib::terms

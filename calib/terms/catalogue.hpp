@@ -1,8 +1,11 @@
-// All effects the software knows, by name.
+// All effects the software knows, of wheels and of the lidar, by name.
 #pragma once
 
+#include <memory>
 #include <string>
+#include <vector>
 
+#include "calib/terms/lidar_effect.hpp"
 #include "calib/vehicle/drive_model.hpp"
 
 namespace odomcalib::calib::terms {
@@ -20,5 +23,17 @@ std::shared_ptr<const vehicle::Effect> clock_effect(vehicle::ClockPart part);
 
 /// All effects of that name, e.g. one per wheel.
 vehicle::EffectList find_effects(const std::string& name);
+
+/// Every named effect of the lidar.
+/// @param all_round whether the head sees all directions, so that its stated steps add up to a turn
+const std::vector<LidarEffectPtr>& lidar_catalogue(bool all_round);
+/// nullptr when there is none.
+LidarEffectPtr find_lidar_effect(const std::string& name);
+
+/// Effects that a stage finds by its own means, beside the search.
+std::shared_ptr<const vehicle::Effect> make_scan_skew();
+LidarEffectPtr make_range_bias();
+/// @param all_round see lidar_catalogue()
+LidarEffectPtr make_angle_scale(bool all_round = false);
 
 }  // namespace odomcalib::calib::terms

@@ -30,16 +30,6 @@ std::vector<double> LidarEffect::values_of(const QuantityList& stated) const {
   return values;
 }
 
-std::vector<LidarEffectPtr> lidar_catalogue(bool all_round) {
-  return {make_range_bias(), make_lidar_tilt(), make_angle_scale(all_round)};
-}
-
-LidarEffectPtr find_lidar_effect(const std::string& name) {
-  for (const auto& effect : lidar_catalogue(false))
-    if (effect->name() == name) return effect;
-  return nullptr;
-}
-
 bool completes(const LidarFinding& finding, const std::vector<LidarFinding>& all) {
   return !finding.effect->is_named() && std::any_of(all.begin(), all.end(), [&](const LidarFinding& other) {
     return other.effect->is_named() && other.effect->covariate() == finding.effect->covariate();

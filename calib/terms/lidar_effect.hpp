@@ -32,7 +32,7 @@ struct LidarParameter {
   double largest = 0.0;     ///< no device is worse
 };
 
-/// What an effect of the lidar is, all of it constant: one row of the catalogue, in the file of the effect.
+/// A row of the catalogue: the constant part of an effect of the lidar, in the effect's own file.
 struct LidarEffectRow {
   /// Name of the effect; the covariate where it is an unnamed dependence.
   std::string name;
@@ -89,15 +89,6 @@ class LidarEffect {
 };
 
 using LidarEffectPtr = std::shared_ptr<const LidarEffect>;
-
-LidarEffectPtr make_range_bias();
-/// @param all_round whether the head sees all directions, so that its stated steps add up to a turn
-LidarEffectPtr make_angle_scale(bool all_round = false);
-LidarEffectPtr make_lidar_tilt();
-
-/// Every named effect of the lidar.
-std::vector<LidarEffectPtr> lidar_catalogue(bool all_round);
-LidarEffectPtr find_lidar_effect(const std::string& name);
 
 /// An error of the lidar itself that was found in its scans.
 struct LidarFinding {

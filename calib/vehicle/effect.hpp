@@ -44,7 +44,7 @@ enum class Storage { controller, host, driver, nowhere };
 /// The part that an effect describes of the sensor's clock against that of the encoders.
 enum class ClockPart { none, offset, rate };
 
-/// What an effect is, all of it constant: one row of the catalogue, in the file of the effect.
+/// A row of the catalogue: the constant part of an effect, in the effect's own file.
 struct EffectRow {
   std::string name;
   std::vector<EffectParameter> parameters;

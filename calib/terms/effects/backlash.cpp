@@ -1,6 +1,5 @@
 #include <algorithm>
 
-#include "calib/terms/effects/factories.hpp"
 #include "calib/terms/effects/step_effect.hpp"
 
 namespace odomcalib::calib::terms {

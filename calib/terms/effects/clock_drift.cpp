@@ -1,4 +1,3 @@
-#include "calib/terms/effects/factories.hpp"
 #include "calib/vehicle/effect.hpp"
 
 namespace odomcalib::calib::terms {

@@ -1,4 +1,3 @@
-#include "calib/terms/effects/factories.hpp"
 #include "calib/terms/effects/step_effect.hpp"
 
 namespace odomcalib::calib::terms {

@@ -8,6 +8,7 @@
 
 #include "calib/ingest/sweeps.hpp"
 #include "calib/selection/lidar_trace.hpp"
+#include "calib/terms/catalogue.hpp"
 #include "calib/terms/lidar_smooth_term.hpp"
 
 namespace odomcalib::calib::terms::lidar_effect_test {
@@ -96,7 +97,7 @@ TEST(LidarEffect, of_parts_of_the_view_has_no_common_offset) {
 }
 
 TEST(LidarEffect, S3_19_a_tilted_plane_meets_walls_late_along_the_slope_and_not_across) {
-  const auto tilt = make_lidar_tilt();
+  const auto tilt = find_lidar_effect("lidar_tilt");
   const double angle = 0.1, direction = 0.4, stretch = angle * angle / 4.0;
   const std::vector<double> values = {stretch * std::cos(2.0 * direction),
                                       stretch * std::sin(2.0 * direction)};
@@ -109,7 +110,9 @@ TEST(LidarEffect, S3_19_a_tilted_plane_meets_walls_late_along_the_slope_and_not_
 
 TEST(LidarEffect, correction_undoes_the_error) {
   const std::vector<std::pair<LidarEffectPtr, std::vector<double>>> cases = {
-      {make_range_bias(), {0.03}}, {make_angle_scale(), {0.002}}, {make_lidar_tilt(), {0.002, -0.001}}};
+      {make_range_bias(), {0.03}},
+      {make_angle_scale(), {0.002}},
+      {find_lidar_effect("lidar_tilt"), {0.002, -0.001}}};
   for (const auto& [effect, values] : cases) {
     const Scan good = distorted(*effect, std::vector<double>(values.size(), 0.0));
     const Scan mended = corrected(distorted(*effect, values), {{effect, values, values, 0.0, 0.0, 0.0}});
@@ -134,7 +137,7 @@ TEST(LidarEffect, that_bends_ranges_leaves_the_metre_in_doubt) {
   const double slope = -0.01 / (1.5 * std::numbers::ln2);
   EXPECT_NEAR(uncertainty(of_range, {0.0, 0.01, 0.0, 0.0}), 0.5 * std::abs(slope), 1e-5);
   EXPECT_NEAR(uncertainty(of_range, {0.01, 0.01, 0.01, 0.01}), 0.0, 1e-9);
-  EXPECT_EQ(uncertainty(make_lidar_tilt(), {0.1, 0.1}), 0.0);
+  EXPECT_EQ(uncertainty(find_lidar_effect("lidar_tilt"), {0.1, 0.1}), 0.0);
   EXPECT_EQ(selection::range_scale_uncertainty({}, {&recording, 1}), 0.0);
 }
 
