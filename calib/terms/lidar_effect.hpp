@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "calib/vehicle/parameter_meaning.hpp"
 #include "proto/calibration/calibration.hpp"
 
 namespace odomcalib::calib::terms {
@@ -30,6 +31,7 @@ struct LidarParameter {
   std::string unit;
   double negligible = 0.0;  ///< size below which it is not worth a claim
   double largest = 0.0;     ///< no device is worse
+  vehicle::ParameterMeaning meaning = {};
 };
 
 /// A row of the catalogue: the constant part of an effect of the lidar, in the effect's own file.

@@ -1,151 +1,23 @@
 #include "calib/terms/parameter_meaning.hpp"
 
-#include <algorithm>
-#include <array>
-
-#include "proto/angles.hpp"
+#include "calib/terms/catalogue.hpp"
 
 namespace odomcalib::calib::terms {
 namespace {
 
-constexpr double kShownDegrees = odomcalib::kDegrees;
-
-constexpr auto kMeanings = std::to_array<ParameterMeaning>({
-    {"time_offset", "offset", "delay of the scans", 1e3, "ms",
-     "by which scans are stamped later than counts of the same moment",
-     "scans are stamped {} [later|earlier] than counts of the same moment"},
-    {"time_offset", "smoothing", "smoothing of the counts", 1e6, "ms^2",
-     "of the counts: half the square of a filter's time constant", ""},
-    {"clock_drift", "rate", "", 1e6, "ms in 1000 s", "by which the two clocks drift apart",
-     "the clocks of scans and counts drift apart by {}"},
-    {"encoder_lag", "left_less_right", "left less right", 1e3, "ms",
-     "age of the left wheel's counts less that of the right wheel's",
-     "counts of the left wheel are {} [older|newer] than those of the right one"},
-    {"scan_skew", "c", "", 100.0, "% at 1 rad/s",
-     "share of left turns that the sweeps do not see, and of right turns that they see twice, per rad/s",
-     "sweeps of the lidar see {} too [little|much] of left turns and as much too [much|little] of right "
-     "ones"},
-    {"wheel_eccentricity", "left_cos", "left wheel, cosine part", 100.0, "%",
-     "share by which the left radius varies as the wheel turns: cosine part", ""},
-    {"wheel_eccentricity", "left_sin", "left wheel, sine part", 100.0, "%",
-     "share by which the left radius varies as the wheel turns: sine part", ""},
-    {"wheel_eccentricity", "right_cos", "right wheel, cosine part", 100.0, "%",
-     "share by which the right radius varies as the wheel turns: cosine part", ""},
-    {"wheel_eccentricity", "right_sin", "right wheel, sine part", 100.0, "%",
-     "share by which the right radius varies as the wheel turns: sine part", ""},
-    {"tick_loss", "left_kappa", "left encoder", 100.0, "%",
-     "share by which the left wheel goes further than it counts, above the threshold",
-     "left encoder counts {} too [few|many] at speed"},
-    {"tick_loss", "right_kappa", "right encoder", 100.0, "%",
-     "share by which the right wheel goes further than it counts, above the threshold",
-     "right encoder counts {} too [few|many] at speed"},
-    {"tick_loss", "threshold", "from a speed of", 1.0, "m/s",
-     "speed of the wheel above which counts are lost", ""},
-    {"tick_loss", "width", "sets in over", 1.0, "m/s", "range of speed over which the loss sets in", ""},
-    {"backlash", "left_play", "left gear", kShownDegrees, "deg",
-     "angle that the left motor turns before the wheel follows, after a reversal",
-     "play of {} in the left gear"},
-    {"backlash", "right_play", "right gear", kShownDegrees, "deg",
-     "angle that the right motor turns before the wheel follows, after a reversal",
-     "play of {} in the right gear"},
-    {"backlash", "spread", "taken up over", kShownDegrees, "deg", "angle over which it is missed; 0: at once",
-     ""},
-    {"direction_dependent_diameter", "left_kappa", "left wheel", 100.0, "%",
-     "share by which the left wheel is larger when it rolls back",
-     "left wheel {} [larger|smaller] when it rolls back"},
-    {"direction_dependent_diameter", "right_kappa", "right wheel", 100.0, "%",
-     "share by which the right wheel is larger when it rolls back",
-     "right wheel {} [larger|smaller] when it rolls back"},
-    {"speed_dependent_radius", "kappa", "", 100.0, "% at 1 m/s", "share by which both wheels grow per m/s",
-     "both wheels [grow|shrink] by {}"},
-    {"speed_dependent_radius", "half_speed", "half of it at", 1.0, "m/s",
-     "speed at which half of the growth is reached; 0: it has no end", ""},
-    {"acceleration_slip", "k", "", 100.0, "% at 1 m/s^2",
-     "share of its way that a wheel slips per m/s^2 of acceleration",
-     "wheels [slip|run ahead] by {} of acceleration"},
-    {"acceleration_slip", "side", "when driving (1), braking (-1) or both (0)", 1.0, "",
-     "1: when it drives; -1: when it brakes; 0: both", ""},
-    {"lateral_slip", "k", "by turn rate", 1e3, "mm a metre at 1 rad/s",
-     "way outwards in a bend, per metre driven and rad/s of turn rate",
-     "the robot slips [outwards|inwards] in bends, {}"},
-    {"lateral_slip", "k_tyre", "by acceleration", 1e3, "mm a metre at 1 m/s^2",
-     "way outwards in a bend, per metre driven and m/s^2 of centripetal acceleration",
-     "the robot slips [outwards|inwards] in bends, {}"},
-    {"lateral_slip", "relaxation", "taken up over", 1e3, "mm",
-     "way over which the tyres take that up; 0: at once", ""},
-    {"speed_dependent_track", "kappa", "", 100.0, "% at 1 rad/s",
-     "share by which the effective track width grows per rad/s of turn rate",
-     "the effective track width [grows|shrinks] with the turn rate, {}"},
-    {"track_depends_on_motion", "kappa", "", 100.0, "%",
-     "share by which the effective track width is larger in a spin than in a wide bend",
-     "the effective track width is {} [larger|smaller] in a spin than in a wide bend"},
-    {"track_depends_on_motion", "arm", "half of it at a bend of", 1.0, "track widths",
-     "radius of the bend that is half a spin, in track widths", ""},
-    {"turn_direction_asymmetry", "kappa", "", 100.0, "%",
-     "share by which the effective track width is larger in left turns than in right ones",
-     "the effective track width is {} [larger|smaller] in left turns than in right ones"},
-    {"caster_kick", "kappa", "by direction of travel", kShownDegrees, "deg",
-     "turn after a reversal, to the side that changes with the direction of travel",
-     "the caster turns the robot by {} after a reversal, by direction of travel"},
-    {"caster_kick", "kappa_turn", "by the turn before", kShownDegrees, "deg",
-     "turn after a reversal, to the side that the turn before gives",
-     "the caster turns the robot by {} after a reversal, by the turn before"},
-    {"caster_kick", "kappa_side", "to one side", kShownDegrees, "deg",
-     "turn after a reversal, always to the same side",
-     "the caster turns the robot {} to the [left|right] after a reversal"},
-    {"caster_kick", "length", "fades over", 1e3, "mm", "way over which it fades to a third", ""},
-    {"caster_kick", "order", "form (0, 1 or 2)", 1.0, "",
-     "2: it rises before it fades; 1: it fades from the reversal on; 0: it follows the caster's angle", ""},
-    {"caster_kick", "lean", "angle at rest", kShownDegrees, "deg",
-     "angle that the caster keeps when it has settled", ""},
-    {"stop_settling", "turn", "turn", kShownDegrees, "deg",
-     "turn that follows a stop, uncounted; negative: back",
-     "the robot turns [on|back] by {} after a stop, uncounted"},
-    {"stop_settling", "way", "way", 1e3, "mm", "way that follows a stop, uncounted; negative: back",
-     "the robot rolls [on|back] by {} after a stop, uncounted"},
-    {"stop_settling", "lasting", "until another turn (1) or stop (0)", 1.0, "",
-     "1: a turn stays wound up until another one; 0: until the next stop", ""},
-    {"stop_settling", "speed", "at a speed of", 1.0, "m/s",
-     "speed before the stop at which these sizes hold; 0: at any", ""},
-    {"drift_with_time", "common", "both wheels", 100.0, "% in 100 s",
-     "share by which both diameters grow in 100 s", "both wheels [grow|shrink] by {}"},
-    {"drift_with_time", "differential", "right against left", 100.0, "% in 100 s",
-     "share by which the right diameter grows and the left one shrinks in 100 s",
-     "the right wheel [grows|shrinks] and the left one [shrinks|grows] by {}"},
-    {"drift_with_time", "time_constant", "settles in", 1.0, "s", "of that growth", ""},
-    {"floor_slope", "kappa_x", "along x", 100.0, "%",
-     "share of its way that the robot creeps back when it heads along x",
-     "on this floor the robot creeps [back|on] by {} of its way along x"},
-    {"floor_slope", "kappa_y", "along y", 100.0, "%",
-     "share of its way that the robot creeps back when it heads along y",
-     "on this floor the robot creeps [back|on] by {} of its way along y"},
-    {"carpet", "p_x", "along x", 1e3, "mm a metre",
-     "way along x of the room, per metre driven on any heading",
-     "on this floor the robot is carried {} along [x|minus x]"},
-    {"carpet", "p_y", "along y", 1e3, "mm a metre",
-     "way along y of the room, per metre driven on any heading",
-     "on this floor the robot is carried {} along [y|minus y]"},
-    {"range_bias", "offset", "", 1e3, "mm", "by which every range is too long",
-     "ranges of the lidar are {} too [long|short]"},
-    {"angle_scale", "epsilon", "", 100.0, "%", "share by which the angles between beams are larger than true",
-     "angles between beams of the lidar are {} too [large|small]"},
-    {"lidar_tilt", "stretch_cos", "ahead and behind", 100.0, "%",
-     "share by which ranges ahead and behind are too long, and those at the sides too short",
-     "ranges of the lidar are {} too [long|short] ahead and behind"},
-    {"lidar_tilt", "stretch_sin", "across", 100.0, "%",
-     "share by which ranges ahead left and behind right are too long, and the others too short",
-     "ranges of the lidar are {} too [long|short] ahead left and behind right"},
-});
+constexpr auto kMeaningAmong = [](const auto& catalogue, std::string_view effect,
+                                  std::string_view parameter) -> const ParameterMeaning* {
+  for (const auto& one : catalogue)
+    for (const auto& own : one->parameters())
+      if (one->name() == effect && own.name == parameter) return &own.meaning;
+  return nullptr;
+};
 
 }  // namespace
 
-std::span<const ParameterMeaning> parameter_meanings() { return kMeanings; }
-
 const ParameterMeaning* meaning_of(std::string_view effect, std::string_view parameter) {
-  const auto* found = std::find_if(kMeanings.begin(), kMeanings.end(), [&](const ParameterMeaning& row) {
-    return row.effect == effect && row.parameter == parameter;
-  });
-  return found == kMeanings.end() ? nullptr : found;
+  const ParameterMeaning* of_wheels = kMeaningAmong(effect_catalogue(), effect, parameter);
+  return of_wheels ? of_wheels : kMeaningAmong(lidar_catalogue(false), effect, parameter);
 }
 
 }  // namespace odomcalib::calib::terms

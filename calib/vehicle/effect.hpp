@@ -14,6 +14,7 @@
 #include "calib/vehicle/channel.hpp"
 #include "calib/vehicle/covariates/covariate_groups.hpp"
 #include "calib/vehicle/motion_step.hpp"
+#include "calib/vehicle/parameter_meaning.hpp"
 
 namespace odomcalib::calib::vehicle {
 
@@ -34,6 +35,7 @@ struct EffectParameter {
   bool fixed = false;  ///< a shape that is tried at several values instead of being fitted
   /// In an effect of the reference: this part belongs to the wheels, whoever looks at them.
   bool of_wheels = false;
+  ParameterMeaning meaning = {};  ///< that of a smooth term's coefficient is empty
   /// Shapes (thresholds, lengths) start away from zero; sizes start at zero.
   [[nodiscard]] bool is_size() const { return start == 0.0 && !fixed; }
 };

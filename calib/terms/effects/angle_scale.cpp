@@ -12,15 +12,23 @@ class AngleScale final : public LidarEffect {
   explicit AngleScale(bool all_round) : LidarEffect(row(all_round)) {}
 
   static LidarEffectRow row(bool all_round) {
-    return {.name = "angle_scale",
-            // Few pairs of scans, those of wide views, show what it does: most readings stay nearly where
-            // they were.
-            .may_leave = all_round ? 0.85 : 0.998,
-            .least_z = all_round ? 5.0 : 1.5,
-            .share_of_free_term = all_round ? 1.0 : LidarEffectRow{}.share_of_free_term,
-            .covariate = "bearing",
-            .parameters = {{.name = "epsilon", .unit = "1", .negligible = 5e-4, .largest = 0.1}},
-            .aliases = {"track_width"}};
+    return {
+        .name = "angle_scale",
+        // Few pairs of scans, those of wide views, show what it does: most readings stay nearly where
+        // they were.
+        .may_leave = all_round ? 0.85 : 0.998,
+        .least_z = all_round ? 5.0 : 1.5,
+        .share_of_free_term = all_round ? 1.0 : LidarEffectRow{}.share_of_free_term,
+        .covariate = "bearing",
+        .parameters = {{.name = "epsilon",
+                        .unit = "1",
+                        .negligible = 5e-4,
+                        .largest = 0.1,
+                        .meaning = {.factor = 100.0,
+                                    .unit = "%",
+                                    .is = "share by which the angles between beams are larger than true",
+                                    .said = "angles between beams of the lidar are {} too [large|small]"}}},
+        .aliases = {"track_width"}};
   }
 
   [[nodiscard]] std::vector<BeamShift> shifts(const Sighting& sighting) const override {

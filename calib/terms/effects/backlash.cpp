@@ -1,6 +1,7 @@
 #include <algorithm>
 
 #include "calib/terms/effects/step_effect.hpp"
+#include "proto/angles.hpp"
 
 namespace odomcalib::calib::terms {
 namespace {
@@ -15,24 +16,48 @@ class Backlash final : public StepEffect<Backlash> {
   explicit Backlash(double spread) : StepEffect(row(spread)) {}
 
   static vehicle::EffectRow row(double spread) {
-    return {.name = "backlash",
-            .parameters = {{.name = "left_play", .unit = "rad", .scale = 0.02, .lower = -0.3, .upper = 0.3},
-                           {.name = "right_play", .unit = "rad", .scale = 0.02, .lower = -0.3, .upper = 0.3},
-                           {.name = "spread",
-                            .unit = "rad",
-                            .scale = 1e9,
-                            .lower = 0.0,
-                            .upper = 1.0,
-                            .start = spread,
-                            .fixed = true}},
-            .aliases = {"time_offset", "caster_kick"},
-            .separating_motion =
-                "reversals at low and high speed; spins left and right, where the wheels reverse and the "
-                "robot does not",
-            .manoeuvre = "reversals",
-            .dependences = {{vehicle::Covariate::left_since_reversal, vehicle::Channel::left_travel},
-                            {vehicle::Covariate::right_since_reversal, vehicle::Channel::right_travel}},
-            .covariates = {vehicle::CovariateGroup::gear_play}};
+    return {
+        .name = "backlash",
+        .parameters =
+            {{.name = "left_play",
+              .unit = "rad",
+              .scale = 0.02,
+              .lower = -0.3,
+              .upper = 0.3,
+              .meaning = {.label = "left gear",
+                          .factor = odomcalib::kDegrees,
+                          .unit = "deg",
+                          .is = "angle that the left motor turns before the wheel follows, after a reversal",
+                          .said = "play of {} in the left gear"}},
+             {.name = "right_play",
+              .unit = "rad",
+              .scale = 0.02,
+              .lower = -0.3,
+              .upper = 0.3,
+              .meaning = {.label = "right gear",
+                          .factor = odomcalib::kDegrees,
+                          .unit = "deg",
+                          .is = "angle that the right motor turns before the wheel follows, after a reversal",
+                          .said = "play of {} in the right gear"}},
+             {.name = "spread",
+              .unit = "rad",
+              .scale = 1e9,
+              .lower = 0.0,
+              .upper = 1.0,
+              .start = spread,
+              .fixed = true,
+              .meaning = {.label = "taken up over",
+                          .factor = odomcalib::kDegrees,
+                          .unit = "deg",
+                          .is = "angle over which it is missed; 0: at once"}}},
+        .aliases = {"time_offset", "caster_kick"},
+        .separating_motion =
+            "reversals at low and high speed; spins left and right, where the wheels reverse and the robot "
+            "does not",
+        .manoeuvre = "reversals",
+        .dependences = {{vehicle::Covariate::left_since_reversal, vehicle::Channel::left_travel},
+                        {vehicle::Covariate::right_since_reversal, vehicle::Channel::right_travel}},
+        .covariates = {vehicle::CovariateGroup::gear_play}};
   }
 
   [[nodiscard]] std::vector<std::shared_ptr<const vehicle::Effect>> variants() const override {

@@ -12,7 +12,15 @@ class ClockDrift final : public vehicle::Effect {
 
   static vehicle::EffectRow row() {
     return {.name = "clock_drift",
-            .parameters = {{.name = "rate", .unit = "s/s", .scale = 1e-4, .lower = -0.1, .upper = 0.1}},
+            .parameters = {{.name = "rate",
+                            .unit = "s/s",
+                            .scale = 1e-4,
+                            .lower = -0.1,
+                            .upper = 0.1,
+                            .meaning = {.factor = 1e6,
+                                        .unit = "ms in 1000 s",
+                                        .is = "by which the two clocks drift apart",
+                                        .said = "the clocks of scans and counts drift apart by {}"}}},
             .aliases = {"time_offset"},
             .separating_motion = "five minutes or more with accelerations spread over the whole run",
             .storage = vehicle::Storage::driver,

@@ -13,7 +13,18 @@ class EncoderLag final : public StepEffect<EncoderLag> {
   static vehicle::EffectRow row() {
     return {
         .name = "encoder_lag",
-        .parameters = {{.name = "left_less_right", .unit = "s", .scale = 5e-3, .lower = -0.2, .upper = 0.2}},
+        .parameters =
+            {{.name = "left_less_right",
+              .unit = "s",
+              .scale = 5e-3,
+              .lower = -0.2,
+              .upper = 0.2,
+              .meaning = {.label = "left less right",
+                          .factor = 1e3,
+                          .unit = "ms",
+                          .is = "age of the left wheel's counts less that of the right wheel's",
+                          .said =
+                              "counts of the left wheel are {} [older|newer] than those of the right one"}}},
         .aliases = {"backlash", "time_offset"},
         .separating_motion = "straight lines and turns on the spot with quick starts, without reversing",
         .manoeuvre = "accelerations"};

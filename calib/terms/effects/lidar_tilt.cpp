@@ -14,10 +14,32 @@ class LidarTilt final : public LidarEffect {
 
   static LidarEffectRow row() {
     constexpr double kNegligible = 2.5e-4;  // 1.8 degrees
-    return {.name = "lidar_tilt",
-            .covariate = "bearing",
-            .parameters = {{.name = "stretch_cos", .unit = "1", .negligible = kNegligible, .largest = 0.02},
-                           {.name = "stretch_sin", .unit = "1", .negligible = kNegligible, .largest = 0.02}}};
+    return {
+        .name = "lidar_tilt",
+        .covariate = "bearing",
+        .parameters = {
+            {.name = "stretch_cos",
+             .unit = "1",
+             .negligible = kNegligible,
+             .largest = 0.02,
+             .meaning =
+                 {.label = "ahead and behind",
+                  .factor = 100.0,
+                  .unit = "%",
+                  .is =
+                      "share by which ranges ahead and behind are too long, and those at the sides too short",
+                  .said = "ranges of the lidar are {} too [long|short] ahead and behind"}},
+            {.name = "stretch_sin",
+             .unit = "1",
+             .negligible = kNegligible,
+             .largest = 0.02,
+             .meaning = {
+                 .label = "across",
+                 .factor = 100.0,
+                 .unit = "%",
+                 .is = "share by which ranges ahead left and behind right are too long, and the others too "
+                       "short",
+                 .said = "ranges of the lidar are {} too [long|short] ahead left and behind right"}}}};
   }
 
   [[nodiscard]] std::vector<BeamShift> shifts(const Sighting& s) const override {

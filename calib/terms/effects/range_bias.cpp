@@ -14,7 +14,14 @@ class RangeBias final : public LidarEffect {
     return {.name = "range_bias",
             .is_judged_in_map = true,
             .covariate = "range",
-            .parameters = {{.name = "offset", .unit = "m", .negligible = 0.008, .largest = 0.2}},
+            .parameters = {{.name = "offset",
+                            .unit = "m",
+                            .negligible = 0.008,
+                            .largest = 0.2,
+                            .meaning = {.factor = 1e3,
+                                        .unit = "mm",
+                                        .is = "by which every range is too long",
+                                        .said = "ranges of the lidar are {} too [long|short]"}}},
             .aliases = {"range_scale"}};
   }
 

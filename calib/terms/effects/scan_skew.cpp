@@ -12,7 +12,17 @@ class ScanSkew final : public StepEffect<ScanSkew> {
 
   static vehicle::EffectRow row() {
     return {.name = "scan_skew",
-            .parameters = {{.name = "c", .unit = "s", .scale = 5e-3, .lower = -0.1, .upper = 0.1}},
+            .parameters = {{.name = "c",
+                            .unit = "s",
+                            .scale = 5e-3,
+                            .lower = -0.1,
+                            .upper = 0.1,
+                            .meaning = {.factor = 100.0,
+                                        .unit = "% at 1 rad/s",
+                                        .is = "share of left turns that the sweeps do not see, and of right "
+                                              "turns that they see twice, per rad/s",
+                                        .said = "sweeps of the lidar see {} too [little|much] of left turns "
+                                                "and as much too [much|little] of right ones"}}},
             .aliases = {"turn_direction_asymmetry", "direction_dependent_diameter"},
             .separating_motion =
                 "turns left and right at two or more rates of at least 1:3, and single-wheel turns",

@@ -13,24 +13,36 @@ class SpeedDependentRadius final : public StepEffect<SpeedDependentRadius> {
   explicit SpeedDependentRadius(double half_speed) : StepEffect(row(half_speed)) {}
 
   static vehicle::EffectRow row(double half_speed) {
-    return {.name = "speed_dependent_radius",
-            .parameters = {{.name = "kappa", .unit = "s/m", .scale = 0.01, .lower = -1.0, .upper = 1.0},
-                           {.name = "half_speed",
-                            .unit = "m/s",
-                            .scale = 1e9,
-                            .lower = 0.0,
-                            .upper = 10.0,
-                            .start = half_speed,
-                            .fixed = true}},
-            .aliases = {"track_depends_on_motion", "tick_loss"},
-            .separating_motion =
-                "straight lines at three speeds over 1:3, and spins whose wheel speeds overlap those of the "
-                "straights",
-            .manoeuvre = "straights",
-            .dependences = {vehicle::kOfEachWheel,
-                            {vehicle::Covariate::left_speed, vehicle::Channel::left_travel},
-                            {vehicle::Covariate::right_speed, vehicle::Channel::right_travel},
-                            {vehicle::Covariate::speed, vehicle::Channel::both_travel}}};
+    return {
+        .name = "speed_dependent_radius",
+        .parameters = {{.name = "kappa",
+                        .unit = "s/m",
+                        .scale = 0.01,
+                        .lower = -1.0,
+                        .upper = 1.0,
+                        .meaning = {.factor = 100.0,
+                                    .unit = "% at 1 m/s",
+                                    .is = "share by which both wheels grow per m/s",
+                                    .said = "both wheels [grow|shrink] by {}"}},
+                       {.name = "half_speed",
+                        .unit = "m/s",
+                        .scale = 1e9,
+                        .lower = 0.0,
+                        .upper = 10.0,
+                        .start = half_speed,
+                        .fixed = true,
+                        .meaning = {.label = "half of it at",
+                                    .unit = "m/s",
+                                    .is = "speed at which half of the growth is reached; 0: it has no end"}}},
+        .aliases = {"track_depends_on_motion", "tick_loss"},
+        .separating_motion =
+            "straight lines at three speeds over 1:3, and spins whose wheel speeds overlap those of the "
+            "straights",
+        .manoeuvre = "straights",
+        .dependences = {vehicle::kOfEachWheel,
+                        {vehicle::Covariate::left_speed, vehicle::Channel::left_travel},
+                        {vehicle::Covariate::right_speed, vehicle::Channel::right_travel},
+                        {vehicle::Covariate::speed, vehicle::Channel::both_travel}}};
   }
 
   [[nodiscard]] std::vector<std::shared_ptr<const vehicle::Effect>> variants() const override {

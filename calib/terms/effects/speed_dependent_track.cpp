@@ -10,7 +10,16 @@ class SpeedDependentTrack final : public StepEffect<SpeedDependentTrack> {
 
   static vehicle::EffectRow row() {
     return {.name = "speed_dependent_track",
-            .parameters = {{.name = "kappa", .unit = "s/rad", .scale = 0.01, .lower = -0.2, .upper = 0.2}},
+            .parameters =
+                {{.name = "kappa",
+                  .unit = "s/rad",
+                  .scale = 0.01,
+                  .lower = -0.2,
+                  .upper = 0.2,
+                  .meaning = {.factor = 100.0,
+                              .unit = "% at 1 rad/s",
+                              .is = "share by which the effective track width grows per rad/s of turn rate",
+                              .said = "the effective track width [grows|shrinks] with the turn rate, {}"}}},
             .aliases = {"track_depends_on_motion", "speed_dependent_radius"},
             .separating_motion = "spins at three rates, and arcs at the same turn rate and different speeds",
             .manoeuvre = "turns",

@@ -11,20 +11,34 @@ class TrackDependsOnMotion final : public StepEffect<TrackDependsOnMotion> {
   explicit TrackDependsOnMotion(double arm) : StepEffect(row(arm)) {}
 
   static vehicle::EffectRow row(double arm) {
-    return {.name = "track_depends_on_motion",
-            .parameters = {{.name = "kappa", .unit = "1", .scale = 0.01, .lower = -0.9, .upper = 0.9},
-                           {.name = "arm",
-                            .unit = "tracks",
-                            .scale = 1e9,
-                            .lower = 0.0,
-                            .upper = 10.0,
-                            .start = arm,
-                            .fixed = true}},
-            .aliases = {"tick_loss", "speed_dependent_radius", "speed_dependent_track"},
-            .separating_motion = "spins and arcs with equal wheel speeds",
-            .manoeuvre = "arcs",
-            .dependences = {{vehicle::Covariate::turn_rate, vehicle::Channel::track},
-                            {vehicle::Covariate::speed, vehicle::Channel::track}}};
+    return {
+        .name = "track_depends_on_motion",
+        .parameters =
+            {{.name = "kappa",
+              .unit = "1",
+              .scale = 0.01,
+              .lower = -0.9,
+              .upper = 0.9,
+              .meaning =
+                  {.factor = 100.0,
+                   .unit = "%",
+                   .is = "share by which the effective track width is larger in a spin than in a wide bend",
+                   .said = "the effective track width is {} [larger|smaller] in a spin than in a wide bend"}},
+             {.name = "arm",
+              .unit = "tracks",
+              .scale = 1e9,
+              .lower = 0.0,
+              .upper = 10.0,
+              .start = arm,
+              .fixed = true,
+              .meaning = {.label = "half of it at a bend of",
+                          .unit = "track widths",
+                          .is = "radius of the bend that is half a spin, in track widths"}}},
+        .aliases = {"tick_loss", "speed_dependent_radius", "speed_dependent_track"},
+        .separating_motion = "spins and arcs with equal wheel speeds",
+        .manoeuvre = "arcs",
+        .dependences = {{vehicle::Covariate::turn_rate, vehicle::Channel::track},
+                        {vehicle::Covariate::speed, vehicle::Channel::track}}};
   }
 
   [[nodiscard]] std::vector<std::shared_ptr<const vehicle::Effect>> variants() const override {

@@ -12,7 +12,19 @@ class TurnDirectionAsymmetry final : public StepEffect<TurnDirectionAsymmetry> {
   static vehicle::EffectRow row() {
     return {
         .name = "turn_direction_asymmetry",
-        .parameters = {{.name = "kappa", .unit = "1", .scale = 5e-3, .lower = -0.3, .upper = 0.3}},
+        .parameters =
+            {{.name = "kappa",
+              .unit = "1",
+              .scale = 5e-3,
+              .lower = -0.3,
+              .upper = 0.3,
+              .meaning =
+                  {.factor = 100.0,
+                   .unit = "%",
+                   .is =
+                       "share by which the effective track width is larger in left turns than in right ones",
+                   .said =
+                       "the effective track width is {} [larger|smaller] in left turns than in right ones"}}},
         .aliases = {"scan_skew", "direction_dependent_diameter"},
         .separating_motion = "turns both ways at two or more rates: skew grows with the rate, scrub does not",
         .manoeuvre = "turns",

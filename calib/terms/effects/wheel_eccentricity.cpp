@@ -16,21 +16,36 @@ class WheelEccentricity final : public StepEffect<WheelEccentricity> {
 
   static vehicle::EffectRow row(Side side) {
     const bool left = side == Side::left;
-    return {.name = "wheel_eccentricity",
-            .parameters = {{.name = left ? "left_cos" : "right_cos",
-                            .unit = "1",
-                            .scale = 5e-3,
-                            .lower = -0.1,
-                            .upper = 0.1},
-                           {.name = left ? "left_sin" : "right_sin",
-                            .unit = "1",
-                            .scale = 5e-3,
-                            .lower = -0.1,
-                            .upper = 0.1}},
-            .separating_motion = "slow straight lines of five or more wheel turns",
-            .manoeuvre = "slow_straights",
-            .dependences = {{left ? vehicle::Covariate::left_phase : vehicle::Covariate::right_phase,
-                             left ? vehicle::Channel::left_travel : vehicle::Channel::right_travel}}};
+    return {
+        .name = "wheel_eccentricity",
+        .parameters =
+            {{.name = left ? "left_cos" : "right_cos",
+              .unit = "1",
+              .scale = 5e-3,
+              .lower = -0.1,
+              .upper = 0.1,
+              .meaning =
+                  {.label = left ? "left wheel, cosine part" : "right wheel, cosine part",
+                   .factor = 100.0,
+                   .unit = "%",
+                   .is = left ? "share by which the left radius varies as the wheel turns: cosine part"
+                              : "share by which the right radius varies as the wheel turns: cosine part"}},
+             {.name = left ? "left_sin" : "right_sin",
+              .unit = "1",
+              .scale = 5e-3,
+              .lower = -0.1,
+              .upper = 0.1,
+              .meaning = {.label = left ? "left wheel, sine part" : "right wheel, sine part",
+                          .factor = 100.0,
+                          .unit = "%",
+                          .is =
+                              left
+                                  ? "share by which the left radius varies as the wheel turns: sine part"
+                                  : "share by which the right radius varies as the wheel turns: sine part"}}},
+        .separating_motion = "slow straight lines of five or more wheel turns",
+        .manoeuvre = "slow_straights",
+        .dependences = {{left ? vehicle::Covariate::left_phase : vehicle::Covariate::right_phase,
+                         left ? vehicle::Channel::left_travel : vehicle::Channel::right_travel}}};
   }
 
   template <typename T>

@@ -1,4 +1,4 @@
-// The statements of a report on parameters stand in one table: it has all parameters, and no others.
+// The row of an effect states the words that a report has for each of its parameters.
 #include "calib/terms/parameter_meaning.hpp"
 
 #include <gtest/gtest.h>
@@ -6,52 +6,77 @@
 #include <algorithm>
 #include <set>
 #include <string>
+#include <string_view>
 #include <utility>
+#include <vector>
 
 #include "calib/terms/catalogue.hpp"
-#include "calib/terms/lidar_effect.hpp"
+#include "proto/angles.hpp"
 
 namespace odomcalib::calib::terms::parameter_meaning_test {
 namespace {
 
-using Names = std::set<std::pair<std::string, std::string>>;
+/// A parameter of a catalogue and what its row says of it.
+struct Row {
+  std::string effect, parameter, unit;
+  ParameterMeaning meaning;
+};
 
-template <typename EffectOrLidarEffect>
-void add_parameters(const EffectOrLidarEffect& effect, Names& names) {
-  for (const auto& parameter : effect.parameters()) names.emplace(effect.name(), parameter.name);
+std::vector<Row> rows_of_catalogues() {
+  std::vector<Row> rows;
+  const auto add = [&rows](const auto& catalogue) {
+    for (const auto& effect : catalogue)
+      for (const auto& parameter : effect->parameters())
+        rows.push_back({effect->name(), parameter.name, parameter.unit, parameter.meaning});
+  };
+  add(effect_catalogue());
+  add(lidar_catalogue(false));
+  return rows;
 }
 
-Names of_catalogues() {
-  Names names;
-  for (const auto& effect : effect_catalogue()) add_parameters(*effect, names);
-  for (const bool all_round : {false, true})
-    for (const auto& effect : lidar_catalogue(all_round)) add_parameters(*effect, names);
-  return names;
+TEST(ParameterMeaning, is_stated_by_each_parameter_of_the_catalogues) {
+  EXPECT_GE(rows_of_catalogues().size(), 50U);
+  for (const Row& row : rows_of_catalogues()) {
+    EXPECT_FALSE(row.meaning.is.empty()) << row.effect << " " << row.parameter;
+    EXPECT_GE(row.meaning.factor, 1.0) << row.effect << " " << row.parameter;
+  }
 }
 
-TEST(ParameterMeaning, stands_in_the_table_for_each_parameter_of_the_catalogues_and_no_other) {
-  Names told;
-  for (const ParameterMeaning& row : parameter_meanings())
-    EXPECT_TRUE(told.emplace(row.effect, row.parameter).second)
-        << row.effect << " " << row.parameter << " twice";
-  EXPECT_EQ(told, of_catalogues());
+TEST(ParameterMeaning, shows_angles_in_degrees) {
+  for (const Row& row : rows_of_catalogues()) {
+    EXPECT_EQ(row.unit == "rad", row.meaning.unit == "deg") << row.effect << " " << row.parameter;
+    if (row.unit == "rad") {
+      EXPECT_EQ(row.meaning.factor, odomcalib::kDegrees) << row.effect << " " << row.parameter;
+    }
+  }
+}
+
+TEST(ParameterMeaning, is_found_by_the_names_of_effect_and_parameter) {
+  for (const Row& row : rows_of_catalogues()) {
+    const ParameterMeaning* found = meaning_of(row.effect, row.parameter);
+    ASSERT_NE(found, nullptr) << row.effect << " " << row.parameter;
+    EXPECT_EQ(found->is, row.meaning.is) << row.effect << " " << row.parameter;
+  }
+  EXPECT_EQ(meaning_of("backlash", "offset"), nullptr) << "a parameter of another effect";
+  EXPECT_EQ(meaning_of("no_effect", "offset"), nullptr);
 }
 
 TEST(ParameterMeaning, has_labels_that_tell_the_parameters_of_an_effect_apart) {
-  Names labels;
-  for (const ParameterMeaning& row : parameter_meanings()) {
-    EXPECT_TRUE(labels.emplace(row.effect, row.label).second) << row.effect << " " << row.label << " twice";
-    EXPECT_EQ(row.label.find("kappa"), std::string_view::npos) << row.effect;
-    EXPECT_GE(row.factor, 1.0) << row.effect << " " << row.parameter;
+  std::set<std::pair<std::string, std::string_view>> labels;
+  for (const Row& row : rows_of_catalogues()) {
+    const std::string_view label = row.meaning.label;
+    EXPECT_TRUE(labels.emplace(row.effect, label).second) << row.effect << " " << label << " twice";
+    EXPECT_EQ(label.find("kappa"), std::string_view::npos) << row.effect;
   }
 }
 
 TEST(ParameterMeaning, has_sentences_with_whole_choices) {
-  for (const ParameterMeaning& row : parameter_meanings()) {
-    const auto count = [&row](char c) { return std::count(row.said.begin(), row.said.end(), c); };
-    EXPECT_EQ(count('['), count(']')) << row.said;
-    EXPECT_EQ(count('['), count('|')) << row.said;
-    EXPECT_EQ(row.said.empty() ? 0 : 1, count('{')) << row.said;
+  for (const Row& row : rows_of_catalogues()) {
+    const std::string_view said = row.meaning.said;
+    const auto count = [said](char c) { return std::count(said.begin(), said.end(), c); };
+    EXPECT_EQ(count('['), count(']')) << said;
+    EXPECT_EQ(count('['), count('|')) << said;
+    EXPECT_EQ(said.empty() ? 0 : 1, count('{')) << said;
   }
 }
 
