@@ -104,7 +104,7 @@ Eigen::MatrixXd prior_information(Eigen::Index parameters, const vehicle::Effect
   Eigen::MatrixXd information = Eigen::MatrixXd::Zero(parameters, parameters);
   Eigen::Index first = vehicle::kBaseCount;
   for (const auto& effect : effects) {
-    const auto own = effect->parameters();
+    const auto& own = effect->parameters();
     for (std::size_t k = 0; k < own.size(); ++k)
       if (own[k].prior > 0.0)
         information.diagonal()(first + static_cast<Eigen::Index>(k)) = 1.0 / (own[k].prior * own[k].prior);

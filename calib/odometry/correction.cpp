@@ -54,7 +54,7 @@ Place place_of(const vehicle::Effect& effect, const std::string& parameter) {
 }
 
 bool acts_on_odometry(const vehicle::Effect& effect) {
-  const auto parameters = effect.parameters();
+  const auto& parameters = effect.parameters();
   return std::any_of(parameters.begin(), parameters.end(), [&](const vehicle::EffectParameter& p) {
     return place_of(effect, p) == Place::odometry;
   });

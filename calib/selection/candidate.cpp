@@ -38,7 +38,7 @@ std::string key_of(const vehicle::Effect& effect, const terms::SmoothTerm& smoot
 }
 
 bool belongs_to_one_recording(const vehicle::Effect& effect) {
-  const auto dependences = effect.dependences();
+  const auto& dependences = effect.dependences();
   return std::any_of(dependences.begin(), dependences.end(), [](const vehicle::Dependence& dependence) {
     return begins_with_the_recording(dependence.covariate);
   });
@@ -124,7 +124,7 @@ bool has_textbook_shape(const std::shared_ptr<const vehicle::Effect>& effect) {
 }
 
 std::size_t count_sizes(const vehicle::Effect& effect) {
-  const auto parameters = effect.parameters();
+  const auto& parameters = effect.parameters();
   return static_cast<std::size_t>(std::count_if(parameters.begin(), parameters.end(),
                                                 [](const vehicle::EffectParameter& p) { return !p.fixed; }));
 }

@@ -21,7 +21,7 @@ std::vector<Candidate> textbook_names(const FitTask& task, const FittedModel& mo
 Detectable detectable(const vehicle::Effect& effect, const std::vector<double>& deviations) {
   Detectable best{effect.name(), "", "", std::nullopt, 0.0, effect.separating_motion()};
   double least = std::numeric_limits<double>::infinity();  // in typical sizes
-  const auto parameters = effect.parameters();
+  const auto& parameters = effect.parameters();
   for (std::size_t k = 0; k < parameters.size(); ++k) {
     const vehicle::EffectParameter& parameter = parameters[k];
     if (!parameter.is_size()) continue;

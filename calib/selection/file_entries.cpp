@@ -79,7 +79,7 @@ std::vector<LidarCurve> lidar_curves(const std::vector<terms::LidarFinding>& fin
                      finding.before,
                      finding.after,
                      {}};
-    const auto parameters = finding.effect->parameters();
+    const auto& parameters = finding.effect->parameters();
     for (std::size_t k = 0; k < parameters.size(); ++k)
       curve.coefficients.emplace_back(parameters[k].name, finding.values[k]);
     curves.push_back(std::move(curve));

@@ -38,7 +38,7 @@ std::vector<vehicle::BaseIndex> lengths_of(vehicle::Channel channel) {
 
 /// A steady turn along the path is what unequal wheels do.
 bool may_pass_for_a_length(const vehicle::Effect& effect) {
-  const std::vector<vehicle::Dependence> dependences = effect.dependences();
+  const auto& dependences = effect.dependences();
   return std::any_of(dependences.begin(), dependences.end(), [](const vehicle::Dependence& dependence) {
     return dependence.channel == vehicle::Channel::yaw_path || !lengths_of(dependence.channel).empty();
   });

@@ -19,7 +19,7 @@ std::vector<double> slice(const Eigen::VectorXd& all, Eigen::Index first, Eigen:
 
 /// Large enough to matter, and no larger than devices can be wrong.
 bool is_plausible(const terms::LidarEffect& effect, const std::vector<double>& values) {
-  const auto parameters = effect.parameters();
+  const auto& parameters = effect.parameters();
   double size = 0.0;
   for (std::size_t k = 0; k < values.size(); ++k) {
     size = std::max(size, std::abs(values[k]) / parameters[k].negligible);

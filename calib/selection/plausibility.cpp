@@ -37,7 +37,7 @@ bool moves_lengths(const estimation::FitResult& before, const estimation::FitRes
 
 std::string impossibility(const vehicle::Effect& effect, const estimation::FitResult& fit) {
   const Eigen::VectorXd values = last_parameters(effect, fit);
-  const auto parameters = effect.parameters();
+  const auto& parameters = effect.parameters();
   for (std::size_t k = 0; k < parameters.size(); ++k) {
     const double value = values(static_cast<Eigen::Index>(k));
     if (!(value >= parameters[k].lower && value <= parameters[k].upper)) return outside(parameters[k], value);
@@ -51,7 +51,7 @@ std::string contradiction(const vehicle::Effect& effect, const estimation::FitRe
 
 bool is_held_back(const vehicle::Effect& effect, const estimation::FitResult& fit) {
   const Eigen::VectorXd values = last_parameters(effect, fit);
-  const auto parameters = effect.parameters();
+  const auto& parameters = effect.parameters();
   for (std::size_t k = 0; k < parameters.size(); ++k)
     if (parameters[k].is_size() &&
         !(std::abs(values(static_cast<Eigen::Index>(k))) < settings::kNearBound * parameters[k].upper))
@@ -65,7 +65,7 @@ bool is_negligible(const vehicle::Effect& effect, const estimation::FitResult& f
 }
 
 bool is_negligible(const vehicle::Effect& effect, std::size_t first, const estimation::FitResult& fit) {
-  const auto parameters = effect.parameters();
+  const auto& parameters = effect.parameters();
   double largest = 0.0;
   for (std::size_t k = 0; k < parameters.size(); ++k)
     if (parameters[k].is_size())
@@ -116,7 +116,7 @@ bool smooth_spoils_base(const vehicle::Effect& smooth, const estimation::FitResu
 
 bool is_superfluous(const vehicle::Effect& effect, std::size_t first, const estimation::FitResult& fit) {
   std::vector<Eigen::Index> sizes;
-  const auto parameters = effect.parameters();
+  const auto& parameters = effect.parameters();
   for (std::size_t k = 0; k < parameters.size(); ++k)
     if (parameters[k].is_size()) sizes.push_back(static_cast<Eigen::Index>(first + k));
   const Eigen::VectorXd value = fit.parameters(sizes);

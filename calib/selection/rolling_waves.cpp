@@ -219,7 +219,7 @@ std::optional<double> outstanding(const Repeating& repeating, const Periodogram&
 std::vector<Candidate> with_their_names(std::vector<Candidate> waves, const vehicle::EffectList& present) {
   const std::size_t count = waves.size();
   for (const Candidate& name : names_missing(present, true)) {
-    const auto dependences = name.effect->dependences();
+    const auto& dependences = name.effect->dependences();
     const auto is_its = [&](const Candidate& wave) { return contains(dependences, wave.smooth->dependence); };
     const auto end = waves.begin() + static_cast<std::ptrdiff_t>(count);
     if (std::any_of(waves.begin(), end, is_its)) waves.push_back(name);

@@ -313,7 +313,7 @@ class Search {
   [[nodiscard]] std::optional<std::size_t> better_smooth(const Trial& name) const {
     const auto& effect = candidates_[name.candidate].effect;
     if (has_textbook_shape(effect)) return std::nullopt;
-    const std::vector<vehicle::Dependence> dependences = effect->dependences();
+    const auto& dependences = effect->dependences();
     const auto smooths = round_->by_score([&](std::size_t k) {
       const auto& smooth = candidates_[k].smooth;
       return smooth && passes(k, *round_, result_) && contains(dependences, smooth->dependence);

@@ -36,7 +36,7 @@ double explained_by_smooths(const std::vector<vehicle::Dependence>& dependences,
 /// The error that a finding leaves on its own dependence is the rest of its function, unless a second name
 /// explains nearly all that a free smooth term would.
 bool is_rest_of_a_named_term(std::size_t name, const SearchRound& round, const SearchResult& found) {
-  const std::vector<vehicle::Dependence> dependences = round.candidate(name).effect->dependences();
+  const auto& dependences = round.candidate(name).effect->dependences();
   if (std::none_of(dependences.begin(), dependences.end(), [&](const vehicle::Dependence& dependence) {
         return found.owner_of(dependence) != nullptr;
       }))

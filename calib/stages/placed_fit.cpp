@@ -14,7 +14,7 @@ namespace odomcalib::calib::stages {
 namespace {
 
 bool acts_in_places(const vehicle::Effect& effect) {
-  const auto dependences = effect.dependences();
+  const auto& dependences = effect.dependences();
   return std::any_of(dependences.begin(), dependences.end(), [](const vehicle::Dependence& dependence) {
     return dependence.covariate == vehicle::Covariate::heading ||
            dependence.covariate == vehicle::Covariate::position;

@@ -49,7 +49,7 @@ std::vector<Written> written_effects(const Correction& correction) {
   std::vector<Written> all;
   Eigen::Index next = calib::vehicle::kBaseCount;
   for (const auto& effect : correction.effects) {
-    const auto parameters = effect->parameters();
+    const auto& parameters = effect->parameters();
     Written one{effect->name(), {}};
     for (std::size_t k = 0; k < parameters.size(); ++k) one.values.push_back(correction.parameters(next++));
     if (!is_in_step(one.name)) continue;
