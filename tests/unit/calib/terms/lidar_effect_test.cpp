@@ -332,5 +332,33 @@ TEST(LidarEffect, that_stood_in_stays_without_the_rule_of_elimination) {
   EXPECT_GT(kept.size(), usual.size()) << "seed " << kSeed;
 }
 
+/// Angles that are a little too large here and too small there, too little to be reported: the part of that
+/// which a scale explains is no scale, though one of that size would be reported.
+TEST(LidarEffect, of_a_small_bend_is_named_a_scale_without_the_rule_of_parts) {
+  constexpr double kBend = 1.6e-3, kScale = 1.5e-3;  // rad, rad for each rad
+  for (const unsigned seed : {11U, 12U, 13U}) {
+    std::mt19937 random(seed);
+    const auto bent = sixty_pairs(
+        [](const Sighting& s) {
+          return BeamShift{0.0, kBend * (std::sin(s.bearing) + std::cos(s.bearing) +
+                                         std::sin(2.0 * s.bearing) + std::cos(2.0 * s.bearing))};
+        },
+        random);
+    EXPECT_TRUE(selection::trace_lidar(bent, false).empty()) << "seed " << seed;
+    const auto part =
+        selection::trace_lidar(bent, false, false, RuleSet().without(Rule::lidar_part_of_an_error));
+    ASSERT_EQ(part.size(), 1U) << "seed " << seed;
+    EXPECT_EQ(part.front().effect->name(), "angle_scale");
+    const auto scaled = sixty_pairs(
+        [](const Sighting& s) {
+          return BeamShift{0.0, kScale * s.bearing};
+        },
+        random);
+    const auto whole = selection::trace_lidar(scaled, false);
+    ASSERT_EQ(whole.size(), 1U) << "seed " << seed;
+    EXPECT_EQ(whole.front().effect->name(), "angle_scale") << "explains all of it";
+  }
+}
+
 }  // namespace
 }  // namespace odomcalib::calib::terms::lidar_effect_test
