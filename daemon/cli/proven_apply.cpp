@@ -28,10 +28,6 @@ Error unseen_drive() {
           "drive where it sees walls on all sides, not along a corridor"};
 }
 
-DrivenErrorsEntry entry_of(const DriveErrors& errors) {
-  return {errors.metre_length, errors.metre_heading, errors.turn};
-}
-
 std::string name_of(ProvenApply::End end) {
   constexpr std::array kNames = {"stored", "not_stored", "taken_back", "in_doubt"};
   return kNames.at(static_cast<std::size_t>(end));
@@ -136,8 +132,7 @@ ProvenApply apply_and_prove(const RunMethod& run, const RunMethod& always, const
 }
 
 ProofEntry entry_of(const ProvenApply& applied) {
-  ProofEntry entry{name_of(applied.end), entry_of(applied.before), std::nullopt, std::nullopt};
-  if (applied.after) entry.after = entry_of(*applied.after);
+  ProofEntry entry{name_of(applied.end), applied.before, applied.after, std::nullopt};
   if (const auto& error = applied.error)
     entry.error = {code_name(error->code), error->what, error->where, error->remedy};
   return entry;

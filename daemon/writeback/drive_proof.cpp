@@ -8,11 +8,13 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 #include <numbers>
+#include <tuple>
 #include <utility>
 #include <vector>
 
 #include "daemon/writeback/settings.hpp"
 #include "proto/angles.hpp"
+#include "proto/calibration/field_list.hpp"
 
 namespace odomcalib {
 namespace {
@@ -22,13 +24,19 @@ namespace settings = writeback::settings;
 
 constexpr double kNotMeasured = std::numeric_limits<double>::quiet_NaN();
 
+/// @param words, noise, factor, unit see DriveFigure
+template <std::size_t Index>
+constexpr DriveFigure figure_of(const char* words, double noise, double factor, const char* unit) {
+  constexpr auto member = std::get<Index>(fields::Members<DriveErrors>::list());
+  return {member.key, words, member.member, noise, factor, unit};
+}
+
+/// In the order of the list of members.
 constexpr std::array kDriveFigures = {
-    DriveFigure{"straight_metre_length", "straight metre: length", &DriveErrors::metre_length,
-                settings::kLengthNoise_m, 1e3, "mm"},
-    DriveFigure{"straight_metre_heading", "straight metre: heading", &DriveErrors::metre_heading,
-                settings::kHeadingNoise_rad, kDegrees, "deg"},
-    DriveFigure{"full_turn_heading", "full turn: heading", &DriveErrors::turn, settings::kHeadingNoise_rad,
-                kDegrees, "deg"}};
+    figure_of<0>("straight metre: length", settings::kLengthNoise_m, 1e3, "mm"),
+    figure_of<1>("straight metre: heading", settings::kHeadingNoise_rad, kDegrees, "deg"),
+    figure_of<2>("full turn: heading", settings::kHeadingNoise_rad, kDegrees, "deg")};
+static_assert(kDriveFigures.size() == std::tuple_size_v<decltype(fields::Members<DriveErrors>::list())>);
 
 /// A move from rest to rest.
 struct DrivenMove {
@@ -85,14 +93,14 @@ bool DrivenErrors::add(const ordered_json& motion) {
   const std::vector<DrivenMove> moves = driven_moves(motion);
   if (moves.empty()) return false;
   if (std::all_of(moves.begin(), moves.end(), straight_on)) {
-    errors_.metre_length =
+    errors_.straight_metre_length =
         mean_error(moves, [](const auto& move) { return move.distance_error / move.distance; });
-    errors_.metre_heading =
+    errors_.straight_metre_heading =
         mean_error(moves, [](const auto& move) { return move.yaw_error / move.distance; });
     return straight_ = true;
   }
   if (!std::all_of(moves.begin(), moves.end(), on_the_spot)) return false;
-  errors_.turn =
+  errors_.full_turn_heading =
       mean_error(moves, [](const auto& move) { return 2.0 * std::numbers::pi * move.yaw_error / move.yaw; });
   return turn_ = true;
 }

@@ -6,23 +6,16 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 
+#include "proto/calibration/members.hpp"
 #include "proto/result.hpp"
 
 namespace odomcalib {
 
-/// Errors of odometry against the lidar, root mean squares over the moves.
-struct DriveErrors {
-  double metre_length = 0.0;   ///< m per metre of a straight
-  double metre_heading = 0.0;  ///< rad per metre of a straight
-  double turn = 0.0;           ///< rad per full turn on the spot
-
-  bool operator==(const DriveErrors&) const = default;
-};
-
-/// One of them as people and programs have it.
+/// One of the errors as people and programs have it.
 struct DriveFigure {
-  const char* name;  ///< in JSON
+  std::string_view name;  ///< in JSON, as in a calibration file
   const char* words;
   double DriveErrors::*value;
   double noise;   ///< what two drives differ by at least
@@ -38,7 +31,7 @@ template <typename Json>
 Json json_of(const std::optional<DriveErrors>& errors) {
   if (!errors) return nullptr;
   Json body = Json::object();
-  for (const DriveFigure& one : drive_figures()) body[one.name] = (*errors).*one.value;
+  for (const DriveFigure& one : drive_figures()) body[std::string(one.name)] = (*errors).*one.value;
   return body;
 }
 /// nullopt: it is no such object.
@@ -46,8 +39,9 @@ template <typename Json>
 std::optional<DriveErrors> drive_errors_from(const Json& body) {
   DriveErrors errors;
   for (const DriveFigure& one : drive_figures()) {
-    if (!body.is_object() || !body.contains(one.name) || !body[one.name].is_number()) return std::nullopt;
-    errors.*one.value = body[one.name].template get<double>();
+    const std::string name(one.name);
+    if (!body.is_object() || !body.contains(name) || !body[name].is_number()) return std::nullopt;
+    errors.*one.value = body[name].template get<double>();
   }
   return errors;
 }

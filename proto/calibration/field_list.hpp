@@ -570,10 +570,10 @@ struct Members<SolveSettings> {
 };
 
 template <>
-struct Members<DrivenErrorsEntry> {
+struct Members<DriveErrors> {
   static constexpr const char* kDefinition = "driven_errors";
   static constexpr auto list() {
-    using D = DrivenErrorsEntry;
+    using D = DriveErrors;
     return std::tuple{
         field("straight_metre_length", &D::straight_metre_length, {.meaning = "m", .form = Form::finite}),
         field("straight_metre_heading", &D::straight_metre_heading, {.meaning = "rad", .form = Form::finite}),

@@ -111,9 +111,13 @@ struct SolveSettings {
   std::string place, note;
 };
 
-/// Errors of odometry on fresh motion: m, rad, rad.
-struct DrivenErrorsEntry {
-  double straight_metre_length = 0.0, straight_metre_heading = 0.0, full_turn_heading = 0.0;
+/// Errors of odometry against the lidar on fresh motion, root mean squares over the moves.
+struct DriveErrors {
+  double straight_metre_length = 0.0;   ///< m per metre of a straight
+  double straight_metre_heading = 0.0;  ///< rad per metre of a straight
+  double full_turn_heading = 0.0;       ///< rad per full turn on the spot
+
+  bool operator==(const DriveErrors&) const = default;
 };
 struct ErrorEntry {
   std::string code, what, where, remedy;
@@ -121,8 +125,8 @@ struct ErrorEntry {
 /// Whether fresh motion has proven the values.
 struct ProofEntry {
   std::string outcome;  ///< stored, not_stored, taken_back or in_doubt
-  DrivenErrorsEntry before;
-  std::optional<DrivenErrorsEntry> after;
+  DriveErrors before;
+  std::optional<DriveErrors> after;
   std::optional<ErrorEntry> error;
 };
 

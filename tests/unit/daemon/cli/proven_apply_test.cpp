@@ -60,9 +60,9 @@ const DriveErrors kOff{0.02, 0.01, 0.2};
 TEST(ProvenApply, errors_are_those_of_a_metre_and_of_a_turn) {
   Daemon daemon;
   const auto errors = value_of(drive_errors(daemon.run()));
-  EXPECT_NEAR(errors.metre_length, 0.001, 1e-12);
-  EXPECT_NEAR(errors.metre_heading, 0.001, 1e-12);
-  EXPECT_NEAR(errors.turn, 0.001, 1e-12);
+  EXPECT_NEAR(errors.straight_metre_length, 0.001, 1e-12);
+  EXPECT_NEAR(errors.straight_metre_heading, 0.001, 1e-12);
+  EXPECT_NEAR(errors.full_turn_heading, 0.001, 1e-12);
   EXPECT_THAT(daemon.asked, ElementsAre("Straight", "Spin"));
 }
 
@@ -88,7 +88,8 @@ TEST(ProvenApply, what_is_better_stays) {
 }
 
 TEST(ProvenApply, what_is_worse_in_one_thing_is_taken_back) {
-  for (const auto spoil : {&DriveErrors::metre_length, &DriveErrors::metre_heading, &DriveErrors::turn}) {
+  for (const auto spoil : {&DriveErrors::straight_metre_length, &DriveErrors::straight_metre_heading,
+                           &DriveErrors::full_turn_heading}) {
     Daemon daemon;
     daemon.straight["moves"] = ordered_json::array({move(1.0, 0.0, 0.010, 0.010)});
     daemon.spin["moves"] = ordered_json::array({move(0.0, kTurn, 0.0, 0.010)});

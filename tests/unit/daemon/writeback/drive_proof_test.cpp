@@ -66,8 +66,8 @@ TEST(DriveProof, needs_a_straight_and_a_turn_before_and_after) {
 TEST(DriveProof, tells_what_was_driven_for_the_values_that_wait) {
   const DriveTrial trial = driven(0.02, 0.01).trial();
   ASSERT_TRUE(trial.before && trial.after);
-  EXPECT_NEAR(trial.before->metre_length, 0.02, 1e-12);
-  EXPECT_NEAR(trial.after->metre_length, 0.01, 1e-12);
+  EXPECT_NEAR(trial.before->straight_metre_length, 0.02, 1e-12);
+  EXPECT_NEAR(trial.after->straight_metre_length, 0.01, 1e-12);
   DriveProof none;
   none.driven(straight(0.02));
   none.driven(spin(0.02));

@@ -264,7 +264,7 @@ TEST(FieldList, has_every_member_of_every_struct) {
   WHOLE(FarthestParameter);
   WHOLE(HomogeneityTest);
   WHOLE(SolveSettings);
-  WHOLE(DrivenErrorsEntry);
+  WHOLE(DriveErrors);
   WHOLE(ErrorEntry);
   WHOLE(ProofEntry);
   WHOLE(ProposedValue);
