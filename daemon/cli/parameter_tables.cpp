@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cstdint>
 #include <ctime>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <utility>
 
@@ -17,10 +18,23 @@ namespace {
 
 using nlohmann::ordered_json;
 
-std::string millimetres(const ordered_json& object, const char* name) {
-  const auto found = object.find(name);
-  if (found == object.end() || !found->is_number()) return "-";
-  return fmt::format("{:.3f}", 1000.0 * found->get<double>());
+using Lengths = std::map<std::string, double>;  // m, by quantity
+
+std::string millimetres(const Lengths& lengths, const char* name) {
+  const auto found = lengths.find(name);
+  return found != lengths.end() ? fmt::format("{:.3f}", 1000.0 * found->second) : "-";
+}
+
+std::string change_of(const Lengths& before, const Lengths& after, const char* name) {
+  return millimetres(before, name) + " -> " + millimetres(after, name);
+}
+
+/// Those of them that are numbers.
+Lengths lengths_of(const ordered_json& object) {
+  Lengths lengths;
+  for (const auto& [name, value] : object.items())
+    if (value.is_number()) lengths[name] = value.get<double>();
+  return lengths;
 }
 
 std::string value_in(const ordered_json& object, const char* name, const std::string& unit) {
@@ -58,71 +72,63 @@ Section parameter_section(const ordered_json& parameters) {
   return section;
 }
 
-std::string change_of(const ordered_json& entry, const char* name) {
-  const auto side = [&](const char* when) {
-    return millimetres(entry.value(when, ordered_json::object()), name);
-  };
-  return side("before") + " -> " + side("after");
-}
-
 std::string moment_of(std::int64_t us) {
   return fmt::format("{:%Y-%m-%d %H:%M}", fmt::gmtime(static_cast<std::time_t>(us / 1'000'000)));
 }
 
-std::string user_of(const ordered_json& entry) {
-  const auto found = entry.find("user");
-  if (found == entry.end() || !found->is_number_unsigned()) return "-";
-  const std::string name = entry.value("user_name", "");
-  return (name.empty() ? "" : name + " ") + fmt::format("({})", found->get<std::uint32_t>());
+std::string user_of(const WriteBack& one) {
+  const auto& user = one.entry.origin.user;
+  if (!user) return "-";
+  return (one.user_name.empty() ? "" : one.user_name + " ") + fmt::format("({})", *user);
 }
 
-std::string action_of(const ordered_json& entry) {
-  const std::string restores = entry.value("restores", "");
-  return entry.value("action", "") + (restores.empty() ? "" : " before " + restores);
+std::string action_of(const HistoryEntry& entry) {
+  const std::string& restores = entry.origin.restores;
+  return entry.action + (restores.empty() ? "" : " before " + restores);
 }
 
-std::string outcome_of(const ordered_json& entry) {
-  std::string outcome = readable(entry.value("outcome", ""));
-  if (outcome != "committed" || !entry.contains("proven")) return outcome;
-  return outcome + (entry["proven"] == true ? ", proven" : ", unproven");
+bool is_committed(const HistoryEntry& entry) { return entry.outcome == "committed"; }
+
+std::string outcome_of(const HistoryEntry& entry) {
+  if (!is_committed(entry)) return readable(entry.outcome);
+  return entry.outcome + (entry.origin.proven ? ", proven" : ", unproven");
 }
 
-Table history_table(const ordered_json& entries) {
+Table history_table(const std::vector<WriteBack>& entries) {
   Table table{{"id", "when (UTC)", "by", "action", "outcome"}, {}};
   for (const BaseQuantity length : kDriveLengths) table.head.push_back(readable(name_of(length)) + " mm");
-  for (const auto& entry : entries) {
-    table.rows.push_back({entry.value("id", ""), moment_of(entry.value("time", std::int64_t{0})),
-                          user_of(entry), action_of(entry), outcome_of(entry)});
+  for (const WriteBack& one : entries) {
+    const HistoryEntry& entry = one.entry;
+    table.rows.push_back(
+        {entry.id, moment_of(entry.time), user_of(one), action_of(entry), outcome_of(entry)});
     for (const BaseQuantity length : kDriveLengths)
-      table.rows.back().push_back(change_of(entry, name_of(length)));
+      table.rows.back().push_back(change_of(entry.before, entry.after, name_of(length)));
   }
   return table;
 }
 
-bool is_committed(const ordered_json& entry) { return entry.value("outcome", "") == "committed"; }
-
-std::string sentence_of(const ordered_json& entry) {
-  const std::string user = user_of(entry);
-  std::string text =
-      fmt::format("This calibration was {} on {} UTC", is_committed(entry) ? "written" : "to be written",
-                  moment_of(entry.value("time", std::int64_t{0})));
+std::string sentence_of(const WriteBack& one) {
+  const HistoryEntry& entry = one.entry;
+  const std::string user = user_of(one);
+  std::string text = fmt::format("This calibration was {} on {} UTC",
+                                 is_committed(entry) ? "written" : "to be written", moment_of(entry.time));
   if (user != "-") text += " by " + user;
-  return text + fmt::format(", entry {}: {}.", entry.value("id", ""), outcome_of(entry));
+  return text + fmt::format(", entry {}: {}.", entry.id, outcome_of(entry));
 }
 
 /// Sentences on the newest entry that wrote one calibration, and on what was written since.
-std::vector<std::string> written_lines(const ordered_json& entries, const std::string& sha256) {
-  const auto own = std::find_if(entries.begin(), entries.end(), [&](const auto& entry) {
-    return entry.value("calibration_sha256", "") == sha256;
+std::vector<std::string> written_lines(const std::vector<WriteBack>& entries, const std::string& sha256) {
+  const auto own = std::find_if(entries.begin(), entries.end(), [&](const WriteBack& one) {
+    return one.entry.origin.calibration_sha256 == sha256;
   });
   if (own == entries.end())
     return {"No entry names this calibration: these are other write-backs of its robot."};
   std::vector<std::string> lines = {sentence_of(*own)};
   std::string later;
-  for (auto entry = entries.begin(); entry != own; ++entry)
-    if (is_committed(*entry)) later += (later.empty() ? "" : ", ") + entry->value("id", "");
+  for (auto one = entries.begin(); one != own; ++one)
+    if (is_committed(one->entry)) later += (later.empty() ? "" : ", ") + one->entry.id;
   if (!later.empty()) lines.push_back("Other values were written since: " + later + ".");
-  if (is_committed(*own) && !own->value("proven", false))
+  if (is_committed(own->entry) && !own->entry.origin.proven)
     lines.emplace_back("No drive compared odometry before and after: odomcalibctl calibrate --apply does.");
   return lines;
 }
@@ -131,9 +137,11 @@ std::vector<std::string> written_lines(const ordered_json& entries, const std::s
 Section change_section(const ordered_json& result) {
   Section section{"", {}, {{"", "old -> new, mm"}, {}}};
   const auto after = result.value("after", ordered_json::object());
+  const Lengths old_values = lengths_of(result.value("before", ordered_json::object())),
+                new_values = lengths_of(after);
   for (const BaseQuantity length : kDriveLengths)
     if (const char* name = name_of(length); after.contains(name))
-      section.table.rows.push_back({readable(name), change_of(result, name)});
+      section.table.rows.push_back({readable(name), change_of(old_values, new_values, name)});
   return section;
 }
 
@@ -143,23 +151,20 @@ Document describe_parameters(const ordered_json& parameters) {
   return {"Parameters in force", {parameter_section(parameters)}};
 }
 
-Document describe_history(const ordered_json& entries) {
+Document describe_history(const std::vector<WriteBack>& entries) {
   return {"Write-backs, newest first", {{"", {}, history_table(entries)}}};
 }
 
 namespace {
 
 /// Those of all entries, below each other.
-Table trials_of(const ordered_json& entries) {
+Table trials_of(const std::vector<WriteBack>& entries) {
   Table all;
-  for (const auto& entry : entries) {
-    const ordered_json trial = entry.value("trial", ordered_json::object());
-    const DriveTrial driven{drive_errors_from(trial.value("before", ordered_json())),
-                            drive_errors_from(trial.value("after", ordered_json()))};
-    if (driven.is_empty()) continue;
-    Table own = trial_table(driven);
+  for (const WriteBack& one : entries) {
+    if (one.entry.origin.trial.is_empty()) continue;
+    Table own = trial_table(one.entry.origin.trial);
     own.head.insert(own.head.begin() + 1, "entry");
-    for (auto& row : own.rows) row.insert(row.begin() + 1, entry.value("id", ""));
+    for (auto& row : own.rows) row.insert(row.begin() + 1, one.entry.id);
     all.head = own.head;
     all.rows.insert(all.rows.end(), own.rows.begin(), own.rows.end());
   }
@@ -179,7 +184,7 @@ Table trial_table(const DriveTrial& trial) {
   return table;
 }
 
-std::vector<Section> write_back_sections(const ordered_json& entries, const std::string& sha256) {
+std::vector<Section> write_back_sections(const std::vector<WriteBack>& entries, const std::string& sha256) {
   if (entries.empty()) return {};
   std::vector<Section> sections = {
       {"Written to the controller", written_lines(entries, sha256), history_table(entries)}};

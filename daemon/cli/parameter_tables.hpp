@@ -7,21 +7,22 @@
 #include <vector>
 
 #include "daemon/cli/document.hpp"
+#include "daemon/cli/write_backs.hpp"
 #include "daemon/writeback/drive_proof.hpp"
 
 namespace odomcalib::cli {
 
 /// @param parameters as GetParameters answers
 Document describe_parameters(const nlohmann::ordered_json& parameters);
-/// @param entries as History answers, newest first
-Document describe_history(const nlohmann::ordered_json& entries);
+/// @param entries newest first
+Document describe_history(const std::vector<WriteBack>& entries);
 /// Rows of drive_figures(), with what odometry was off by against the lidar.
 Table trial_table(const DriveTrial& trial);
 /// "Written to the controller" and the drives that were to prove it, for a report; none where there is no
 /// entry.
 /// @param entries of the calibration's robot, newest first
 /// @param sha256 that entries have as "calibration_sha256" where they wrote this calibration
-std::vector<Section> write_back_sections(const nlohmann::ordered_json& entries, const std::string& sha256);
+std::vector<Section> write_back_sections(const std::vector<WriteBack>& entries, const std::string& sha256);
 /// @param result of Apply or Rollback: outcome, steps, parameters
 Document describe_write_back(const nlohmann::ordered_json& result);
 

@@ -6,6 +6,8 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <numbers>
+#include <utility>
+#include <vector>
 
 #include "daemon/cli/client.hpp"
 #include "daemon/cli/document.hpp"
@@ -69,7 +71,10 @@ void print_parameters(const ordered_json& parameters, const Session& session) {
 }
 
 void print_history(const ordered_json& answer, const Session& session) {
-  print_text(describe_history(answer.value("entries", ordered_json::array())), session.legend);
+  std::vector<WriteBack> entries;
+  for (const auto& body : answer.value("entries", ordered_json::array()))
+    if (auto entry = write_back_from(body)) entries.push_back(std::move(*entry));
+  print_text(describe_history(entries), session.legend);
   const std::string folder = answer.value("calibrations", "");
   if (!folder.empty())
     print_line("What changed between the calibrations of this robot: odomcalibctl compare " + folder +

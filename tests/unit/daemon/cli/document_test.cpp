@@ -492,11 +492,13 @@ TEST(WriteBack, a_dry_run_says_what_would_be_written_in_place_of_what) {
 }
 
 TEST(WriteBack, history_says_when_by_whom_and_what_was_proven) {
-  const auto entries = nlohmann::ordered_json::parse(R"([
+  const auto bodies = nlohmann::ordered_json::parse(R"([
     {"id":"0002","time":1795953600000000,"action":"rollback","outcome":"committed","user":1000,"user_name":"ada",
      "restores":"0001","proven":true,"before":{"track_width":0.41},"after":{"track_width":0.4}},
     {"id":"0001","time":1795953540000000,"action":"apply","outcome":"committed","user":1001,
      "proven":false,"before":{"track_width":0.4},"after":{"track_width":0.41}}])");
+  std::vector<WriteBack> entries;
+  for (const auto& body : bodies) entries.push_back(write_back_from(body).value());
   const std::string text = to_text(describe_history(entries), true, 200);
   for (const char* said : {"2026-11-29 12:00", "ada (1000)", "rollback before 0001", "committed, proven",
                            "2026-11-29 11:59", "(1001)", "committed, unproven", "410.000 -> 400.000"})

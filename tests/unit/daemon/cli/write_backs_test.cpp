@@ -26,8 +26,8 @@ Calibration example() {
 }
 
 /// Written and proven, taken back by hand; the third is of another robot.
-nlohmann::ordered_json history_of(const Calibration& calibration) {
-  auto entries = nlohmann::ordered_json::parse(R"([
+std::vector<WriteBack> history_of(const Calibration& calibration) {
+  const auto bodies = nlohmann::ordered_json::parse(R"([
     {"id":"0003","time":1795953660000000,"action":"apply","outcome":"committed","user":null,"device":"0x1/0x2/9",
      "robot_id":"carrier-18","calibration_sha256":"","proven":false,"before":{},"after":{"track_width":0.5}},
     {"id":"0002","time":1795953600000000,"action":"rollback","outcome":"committed","user":1000,"user_name":"ada",
@@ -37,7 +37,9 @@ nlohmann::ordered_json history_of(const Calibration& calibration) {
      "robot_id":"","calibration_sha256":"","proven":true,"before":{"track_width":0.4},"after":{"track_width":0.41},
      "trial":{"before":{"straight_metre_length":0.0204,"straight_metre_heading":0.001,"full_turn_heading":0.21},
               "after":{"straight_metre_length":0.0011,"straight_metre_heading":0.001,"full_turn_heading":0.002}}}])");
-  entries[2]["calibration_sha256"] = digest_in_history(calibration);
+  std::vector<WriteBack> entries;
+  for (const auto& body : bodies) entries.push_back(write_back_from(body).value());
+  entries[2].entry.origin.calibration_sha256 = digest_in_history(calibration);
   return entries;
 }
 
@@ -47,7 +49,7 @@ TEST(WriteBacks, entries_of_a_robot_are_known_by_calibration_robot_and_controlle
   const auto entries = history_of(calibration);
   const auto ids = [&](const Calibration& of) {
     std::string text;
-    for (const auto& entry : entries_of_robot(entries, of)) text += entry["id"].get<std::string>() + " ";
+    for (const WriteBack& one : entries_of_robot(entries, of)) text += one.entry.id + " ";
     return text;
   };
   EXPECT_EQ(ids(calibration), "0002 0001 ");
@@ -84,25 +86,24 @@ TEST(WriteBacks, page_and_text_say_who_wrote_what_and_which_drive_proved_it) {
 
 TEST(WriteBacks, what_was_not_committed_or_proven_is_said_so) {
   const Calibration calibration = example();
-  auto entry = history_of(calibration)[2];
+  auto own = history_of(calibration)[2];
   const auto lines = [&] {
-    return to_text(
-        {"", write_back_sections(nlohmann::ordered_json::array({entry}), digest_in_history(calibration))});
+    return to_text({"", write_back_sections({own}, digest_in_history(calibration))});
   };
-  entry["outcome"] = "rolled_back";
+  own.entry.outcome = "rolled_back";
   EXPECT_THAT(lines(),
               HasSubstr("was to be written on 2026-11-29 11:59 UTC by (1001), entry 0001: rolled back."));
-  entry["outcome"] = "committed";
-  entry["proven"] = false;
-  entry.erase("trial");
+  own.entry.outcome = "committed";
+  own.entry.origin.proven = false;
+  own.entry.origin.trial = {};
   EXPECT_THAT(lines(), HasSubstr("No drive compared odometry before and after"));
   EXPECT_THAT(lines(), Not(HasSubstr("Trials")));
-  entry["calibration_sha256"] = "";
+  own.entry.origin.calibration_sha256 = "";
   EXPECT_THAT(lines(), HasSubstr("No entry names this calibration"));
 }
 
 TEST(WriteBacks, a_report_without_entries_has_no_section_of_them) {
-  EXPECT_TRUE(write_back_sections(nlohmann::ordered_json::array(), "").empty());
+  EXPECT_TRUE(write_back_sections({}, "").empty());
   EXPECT_THAT(report_page(example()), Not(HasSubstr("Written to the controller")));
   EXPECT_EQ(report_page(example()), report_page(example(), {}));
 }
@@ -112,7 +113,10 @@ class HistoryFile : public testing::Test {
   [[nodiscard]] std::string read(const std::string& text) const {
     std::ofstream(folder_ / "history.json") << text;
     const auto entries = read_history(folder_ / "history.json");
-    return entries ? entries.value().dump() : entries.error().text();
+    if (!entries) return entries.error().text();
+    std::string all;
+    for (const WriteBack& one : entries.value()) all += to_json(one.entry, false) + one.user_name;
+    return all;
   }
   TemporaryFolder folder_;
 };
@@ -127,10 +131,12 @@ TEST_F(HistoryFile, is_what_history_prints_or_a_state_folder) {
   ASSERT_TRUE(History(folder_ / "history").write(entry).ok());
   const auto of_folder = read_history(folder_.path());
   ASSERT_TRUE(of_folder.ok());
-  EXPECT_EQ(of_folder.value().dump(),
-            read(R"({"format":"odomcalib-history/1","calibrations":"","entries":[)" + to_json(entry, false) +
-                 "]}"));
-  EXPECT_EQ(read(R"({"entries":[]})"), "[]");
+  ASSERT_EQ(of_folder.value().size(), 1U);
+  EXPECT_EQ(to_json(of_folder.value().front().entry, false), to_json(entry, false));
+  EXPECT_EQ(
+      read(R"({"format":"odomcalib-history/1","calibrations":"","entries":[)" + to_json(entry, false) + "]}"),
+      to_json(entry, false));
+  EXPECT_EQ(read(R"({"entries":[]})"), "");
 }
 
 TEST_F(HistoryFile, says_what_is_wrong_with_it) {
