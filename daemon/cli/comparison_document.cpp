@@ -356,13 +356,10 @@ std::vector<std::string> fleet_row(const ComparedRobot& robot, const std::option
   const Calibration& calibration = newest.calibration;
   const auto& since = robot.standing.since_last;
   std::vector<std::string> row{robot.robot_id.empty() ? file_name(newest.path) : robot.robot_id,
-                               calibration.driven ? day_of(calibration.driven->begin) : "-",
-                               over_nominal(calibration, BaseQuantity::left_wheel_diameter),
-                               over_nominal(calibration, BaseQuantity::right_wheel_diameter),
-                               over_nominal(calibration, BaseQuantity::track_width),
-                               comparison::name_of(robot.standing.urgency),
-                               metre_of_change(robot),
-                               since ? what_changed(*since) : "-"};
+                               calibration.driven ? day_of(calibration.driven->begin) : "-"};
+  for (const BaseQuantity length : kDriveLengths) row.push_back(over_nominal(calibration, length));
+  row.insert(row.end(), {comparison::name_of(robot.standing.urgency), metre_of_change(robot),
+                         since ? what_changed(*since) : "-"});
   if (!bound) return row;
   const auto found =
       robot.trends.empty() ? std::nullopt : comparison::passing(robot.trends.front().parameters, *bound);

@@ -1,11 +1,18 @@
 #include "daemon/cli/usable_calibration.hpp"
 
+#include <array>
+#include <cstddef>
+
 #include "proto/base_quantities.hpp"
 
 namespace odomcalib::cli {
 namespace {
 
 constexpr const char* kRemedy = "solve the recording again";
+
+/// In the order of kDriveLengths.
+constexpr std::array<double Dimensions::*, kDriveLengths.size()> kDimensionMembers = {
+    &Dimensions::left, &Dimensions::right, &Dimensions::track};
 
 }  // namespace
 
@@ -19,20 +26,15 @@ Result<Calibration> read_finite_calibration(const std::string& path) {
 
 Result<Dimensions> dimensions_of(const Calibration& calibration, const std::string& where) {
   Dimensions out{};
-  struct Wanted {
-    BaseQuantity length;
-    double* value;
-  };
-  for (const auto& [length, value] : {Wanted{BaseQuantity::left_wheel_diameter, &out.left},
-                                      Wanted{BaseQuantity::right_wheel_diameter, &out.right},
-                                      Wanted{BaseQuantity::track_width, &out.track}}) {
+  for (std::size_t k = 0; k < kDriveLengths.size(); ++k) {
+    const BaseQuantity length = kDriveLengths[k];
     const auto stated = calibration.parameter(length);
     if (!stated && calibration.verdict == Verdict::refused) return refusal_of(calibration, where);
     if (!stated || !(*stated > 0.0))
       return Error{ErrorCode::format,
                    std::string("\"parameters.") + name_of(length) + "\" is no length above 0", where,
                    kRemedy};
-    *value = *stated;
+    out.*kDimensionMembers[k] = *stated;
   }
   return out;
 }
