@@ -4,16 +4,14 @@
 #include <variant>
 
 #include "calib/terms/bases/change_point.hpp"
-#include "calib/terms/bases/cycle.hpp"
 #include "calib/terms/bases/decay.hpp"
 #include "calib/terms/bases/fading_since.hpp"
 #include "calib/terms/bases/harmonics.hpp"
-#include "calib/terms/bases/patches.hpp"
+#include "calib/terms/bases/place.hpp"
 #include "calib/terms/bases/polynomials.hpp"
 #include "calib/terms/bases/relay.hpp"
 #include "calib/terms/bases/speed_hats.hpp"
 #include "calib/terms/bases/splines.hpp"
-#include "calib/terms/bases/surface.hpp"
 #include "calib/terms/bases/sway.hpp"
 #include "calib/terms/bases/turn_path.hpp"
 #include "calib/terms/bases/wave.hpp"

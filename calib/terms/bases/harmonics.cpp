@@ -2,8 +2,12 @@
 
 #include <complex>
 
-namespace odomcalib::calib::terms {
+#include "calib/math/se2.hpp"
 
+namespace odomcalib::calib::terms {
+namespace {
+
+/// Cosines and sines of the first to the last multiple of an angle, by rotating on from one to the next.
 BasisValues harmonics(double angle, int first, int last) {
   BasisValues functions;
   const std::complex<double> turn = std::polar(1.0, angle);
@@ -15,6 +19,8 @@ BasisValues harmonics(double angle, int first, int last) {
   return functions;
 }
 
+}  // namespace
+
 BasisValues Harmonics::values(const Argument& at) const {
   if (only > 0) return harmonics(at.z, only, only);
   const BasisValues waves = harmonics(at.z, 1, kHarmonics);
@@ -22,6 +28,10 @@ BasisValues Harmonics::values(const Argument& at) const {
   BasisValues all{1.0};
   for (const double f : waves) all.push_back(f);
   return all;
+}
+
+BasisValues Cycle::values(const Argument& at) const {
+  return harmonics(2.0 * math::kPi * at.z / period, 1, 1);
 }
 
 }  // namespace odomcalib::calib::terms

@@ -1,4 +1,4 @@
-// Smooth functions of the place.
+// Functions of the place: smooth ones, and some that have edges.
 #pragma once
 
 #include "calib/terms/bases/argument.hpp"
@@ -13,6 +13,15 @@ struct Surface {
     return {x, y, x * x, x * y, y * y};
   }
   friend bool operator==(const Surface&, const Surface&) = default;
+};
+
+/// Knots each way over a place with patches: a rug has an edge, which no polynomial has.
+inline constexpr int kPatches = 4;
+
+/// Bilinear between the knots, one after another along x for each along y.
+struct Patches {
+  [[nodiscard]] BasisValues values(const Argument& at) const;
+  friend bool operator==(const Patches&, const Patches&) = default;
 };
 
 }  // namespace odomcalib::calib::terms

@@ -1,4 +1,4 @@
-#include "calib/terms/bases/patches.hpp"
+#include "calib/terms/bases/place.hpp"
 
 namespace odomcalib::calib::terms {
 
