@@ -8,7 +8,7 @@ namespace odomcalib::calib::vehicle {
 
 namespace {
 
-/// What of a covariate terms and reports have to know, beside its value.
+/// Properties of a covariate that terms and reports have to know, beside its value.
 enum class Trait : unsigned {
   of_the_place,    ///< or of the day: no property of the robot
   from_the_begin,  ///< counted from where each recording begins

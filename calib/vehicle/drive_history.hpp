@@ -46,7 +46,7 @@ class DriveHistory {
   double since_reversal_ = settings::kBeforeTheDrive;
   double distance_ = 0.0;
 
-  /// Of the interval that was taken in last.
+  /// Values of the interval that was taken in last.
   struct Latest final : OnDemand {
     LostByWheels lost;
     CasterSines sines{};

@@ -27,8 +27,8 @@ constexpr double kNotMeasured = std::numeric_limits<double>::quiet_NaN();
 /// @param words, noise, factor, unit see DriveFigure
 template <std::size_t Index>
 constexpr DriveFigure figure_of(const char* words, double noise, double factor, const char* unit) {
-  constexpr auto member = std::get<Index>(fields::Members<DriveErrors>::list());
-  return {member.key, words, member.member, noise, factor, unit};
+  constexpr auto kMember = std::get<Index>(fields::Members<DriveErrors>::list());
+  return {kMember.key, words, kMember.member, noise, factor, unit};
 }
 
 /// In the order of the list of members.

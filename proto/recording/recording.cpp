@@ -92,7 +92,7 @@ std::optional<Error> read_ros(std::string_view bytes, const std::string& where, 
   return error ? error : ros::fill(builder, collector, topics, where);
 }
 
-/// What the caller of a reader wants.
+/// Wishes of the caller of a reader.
 struct Wanted {
   const RobotDescription* fallback;
   const TopicChoices& topics;

@@ -9,7 +9,7 @@
 
 namespace odomcalib::calib::vehicle {
 
-/// Of the rotation of each wheel in an interval, what a gear train with each of kPlays loses, rad.
+/// Rotation of each wheel in an interval that a gear train with each of kPlays loses, rad.
 struct LostByWheels {
   LostToPlay left{}, right{};
 };

@@ -474,7 +474,7 @@ TEST(Recording, takes_no_memory_for_its_text) {
   for (int i = 0; i < 1 << 16; ++i) text << '\n' << std::string(999, ' ');
   text.close();
   const auto packed = test::write_file("much_text.jsonl.gz", gzip(read_file_bytes(plain).value()).value());
-  // What this test has used itself is free again, and would hide what reading takes.
+  // Memory that this test has used itself is free again, and would hide what reading takes.
   const auto peak_of = [](const std::filesystem::path& file) {
     const pid_t child = fork();
     if (child == 0) {
