@@ -246,7 +246,8 @@ TEST(Recording, says_of_how_many_and_when_it_left_samples_out) {
 
 TEST(Recording, says_between_which_stamps_the_way_is_not_known) {
   std::string text = kRobotLine;
-  for (int i = 0; i < 40; ++i) text += ticks_line(0.1 * i, (i < 20 ? 40 : 9000) + 40 * i, 40 * i);
+  for (std::int64_t i = 0; i < 40; ++i)
+    text += ticks_line(0.1 * static_cast<double>(i), (i < 20 ? 40 : 9000) + 40 * i, 40 * i);
   const auto result = value_of(read_text(text));
   const Discarded& broken = left_out(result, "ticks", kUncontinued);
   ASSERT_EQ(broken.count, 1U) << list_discarded(result);
@@ -257,7 +258,8 @@ TEST(Recording, says_between_which_stamps_the_way_is_not_known) {
 
 TEST(Recording, says_when_counts_were_read_wrong) {
   std::string text = kRobotLine;
-  for (int i = 0; i < 40; ++i) text += ticks_line(0.1 * i, i == 10 || i == 30 ? 100000 : 40 * i, 40 * i);
+  for (std::int64_t i = 0; i < 40; ++i)
+    text += ticks_line(0.1 * static_cast<double>(i), i == 10 || i == 30 ? 100000 : 40 * i, 40 * i);
   const auto result = value_of(read_text(text));
   const Discarded& misread = left_out(result, "ticks", kMisread);
   ASSERT_EQ(misread.count, 2U) << list_discarded(result);
