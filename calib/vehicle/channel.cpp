@@ -4,6 +4,8 @@
 #include <cstddef>
 #include <initializer_list>
 
+#include "calib/vehicle/enum_set.hpp"
+
 namespace odomcalib::calib::vehicle {
 
 namespace {
@@ -21,18 +23,6 @@ enum class Trait : unsigned {
   angle_of_a_wheel,  ///< the latter
 };
 
-class Traits {
- public:
-  constexpr Traits(std::initializer_list<Trait> traits) {
-    for (const Trait trait : traits) bits_ |= bit(trait);
-  }
-  [[nodiscard]] constexpr bool contain(Trait trait) const { return (bits_ & bit(trait)) != 0; }
-
- private:
-  static constexpr unsigned bit(Trait trait) { return 1U << static_cast<unsigned>(trait); }
-  unsigned bits_ = 0;
-};
-
 struct Channels {
   std::array<Channel, static_cast<std::size_t>(kLastChannel) + 1> list{};
   std::size_t size = 0;
@@ -46,7 +36,7 @@ struct CovariateRow {
   const char* manoeuvre;  ///< that shows the most of what depends on it, in a small area; empty: none
   CovariateGroups groups;
   std::size_t memories;  ///< see memories_of
-  Traits traits;
+  EnumSet<Trait> traits;
   Channels channels;  ///< see channels_of
 };
 

@@ -19,7 +19,7 @@ class DriveHistory {
  public:
   /// @param tick_angle rad, of one count: a wheel that stands between two may show either
   DriveHistory(const wheels::BaseParameters& base, double tick_angle,
-               CovariateGroups groups = CovariateGroups::all())
+               CovariateGroups groups = kAllCovariateGroups)
       : base_(base), dither_(dither_of(tick_angle)), groups_(groups) {}
   /// Fills the fields of `context` that depend on the drive so far, then takes the interval in.
   void advance(StepContext& context);

@@ -17,7 +17,7 @@ namespace odomcalib::calib::vehicle {
 /// @param first interval that is wanted; the first of them takes its acceleration's change from itself alone
 std::vector<StepContext> make_context_of_moment(const wheels::WheelTrack& track,
                                                 const wheels::BaseParameters& base,
-                                                CovariateGroups groups = CovariateGroups::all(),
+                                                CovariateGroups groups = kAllCovariateGroups,
                                                 std::size_t first = 0);
 /// The same in place of what `contexts` held: for the last intervals of a track it takes no memory.
 void make_context_of_moment(const wheels::WheelTrack& track, const wheels::BaseParameters& base,
@@ -30,6 +30,6 @@ void fill_past_covariates(StepContext& last, const wheels::WheelTrack& track,
 
 /// With what depends on the drive before.
 DriveContext make_context(const wheels::WheelTrack& track, const wheels::BaseParameters& base,
-                          CovariateGroups groups = CovariateGroups::all());
+                          CovariateGroups groups = kAllCovariateGroups);
 
 }  // namespace odomcalib::calib::vehicle

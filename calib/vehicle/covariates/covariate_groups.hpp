@@ -1,7 +1,7 @@
 // Groups of covariates of the drive so far, computed as a model needs them: most serve one or two terms.
 #pragma once
 
-#include <initializer_list>
+#include "calib/vehicle/enum_set.hpp"
 
 namespace odomcalib::calib::vehicle {
 
@@ -19,33 +19,7 @@ enum class CovariateGroup : unsigned {
 };
 inline constexpr CovariateGroup kLastCovariateGroup = CovariateGroup::caster;
 
-class CovariateGroups {
- public:
-  constexpr CovariateGroups() = default;
-  constexpr CovariateGroups(std::initializer_list<CovariateGroup> groups) {
-    for (const CovariateGroup group : groups) bits_ |= bit(group);
-  }
-  static constexpr CovariateGroups all() {
-    CovariateGroups groups;
-    groups.bits_ = 2U * bit(kLastCovariateGroup) - 1U;
-    return groups;
-  }
-
-  [[nodiscard]] constexpr bool contain(CovariateGroup group) const { return (bits_ & bit(group)) != 0; }
-  constexpr CovariateGroups& operator|=(CovariateGroups others) {
-    bits_ |= others.bits_;
-    return *this;
-  }
-  [[nodiscard]] constexpr CovariateGroups without(CovariateGroups others) const {
-    CovariateGroups groups;
-    groups.bits_ = bits_ & ~others.bits_;
-    return groups;
-  }
-  friend constexpr bool operator==(CovariateGroups, CovariateGroups) = default;
-
- private:
-  static constexpr unsigned bit(CovariateGroup group) { return 1U << static_cast<unsigned>(group); }
-  unsigned bits_ = 0;
-};
+using CovariateGroups = EnumSet<CovariateGroup>;
+inline constexpr CovariateGroups kAllCovariateGroups = CovariateGroups::up_to(kLastCovariateGroup);
 
 }  // namespace odomcalib::calib::vehicle
