@@ -58,7 +58,7 @@ void add_change_points_about(const SmoothTerm& smooth, const ChangePoint& event,
 }
 
 void add_degrees_beside(const SmoothTerm& smooth, const Polynomials& found, std::vector<SmoothTerm>& shapes) {
-  for (int degree = kPlainest; degree <= kDegrees; ++degree)
+  for (int degree = kPlainest; degree <= kHighestDegree; ++degree)
     if (degree != found.degree) shapes.push_back(on_basis(smooth, Polynomials{degree}));
 }
 

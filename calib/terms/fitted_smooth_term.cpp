@@ -20,7 +20,7 @@ std::optional<Enum> enum_from(const std::string& name, Enum last) {
 /// Members of a smooth term's entry that belong to its basis; what the file does not say has its usual value.
 struct Shape {
   double period = 0.0;
-  int harmonic = 0, knots = kKnots, degree = kDegrees;
+  int harmonic = 0, knots = kKnots, degree = kHighestDegree;
   double moment = 0.0, fading = 0.0;
   std::array<double, 2> wave{};
   bool constant = false, patches = false;
@@ -52,7 +52,7 @@ Shape shape_from(const SmoothTermEntry& entry) {
 bool is_sound(const Shape& shape, vehicle::Covariate covariate) {
   const bool is_of_time = shape.moment != 0.0 || shape.fading != 0.0;
   return shape.knots >= kKnots && shape.knots <= kMostKnots && shape.degree >= kPlainest &&
-         shape.degree <= kDegrees && shape.moment >= 0.0 && shape.fading >= 0.0 &&
+         shape.degree <= kHighestDegree && shape.moment >= 0.0 && shape.fading >= 0.0 &&
          (!is_of_time || covariate == vehicle::Covariate::time);
 }
 

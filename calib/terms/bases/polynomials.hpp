@@ -7,12 +7,12 @@
 namespace odomcalib::calib::terms {
 
 /// Highest degree of the polynomials of a term; one that was found may be as plain as the least.
-inline constexpr int kDegrees = 4, kPlainest = 1;
+inline constexpr int kHighestDegree = 4, kPlainest = 1;
 
 /// Degree 1 to `degree` on the covariate's range, clamped outside. Zero at rest where the covariate has a
 /// rest, so that the base parameters keep their meaning of slow, steady motion; time has none.
 struct Polynomials {
-  int degree = kDegrees;
+  int degree = kHighestDegree;
   [[nodiscard]] BasisValues values(const Argument& at) const;
   friend bool operator==(const Polynomials&, const Polynomials&) = default;
 };

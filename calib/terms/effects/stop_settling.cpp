@@ -23,7 +23,7 @@ class StopSettling final : public StepEffect<StopSettling> {
                   .lower = -0.2,
                   .upper = 0.2,
                   .meaning = {.label = "turn",
-                              .factor = odomcalib::kDegrees,
+                              .factor = kDegrees,
                               .unit = "deg",
                               .is = "turn that follows a stop, uncounted; negative: back",
                               .said = "the robot turns [on|back] by {} after a stop, uncounted"}},

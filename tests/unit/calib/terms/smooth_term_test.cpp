@@ -282,7 +282,7 @@ TEST(SmoothTerm, survives_the_calibration_file) {
   // Files of earlier versions do not say what could not be chosen then.
   SmoothTermEntry of_a_newer_program;
   EXPECT_EQ(of_a_newer_program.knots, kKnots);
-  EXPECT_EQ(of_a_newer_program.degree, kDegrees);
+  EXPECT_EQ(of_a_newer_program.degree, kHighestDegree);
   EXPECT_EQ(of_a_newer_program.memory, vehicle::kUsualMemory);
   of_a_newer_program.variable = "mood";
   of_a_newer_program.carrier = "track";
