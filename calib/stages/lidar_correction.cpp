@@ -116,11 +116,11 @@ Findings joined(const Findings& known, const Findings& found) {
   return all;
 }
 
-/// Beams spread too wide bend the walls of a map, as ranges that are too short would.
+/// Errors of the angles, which have to be known before there is a map.
 Findings wrong_angles(const estimation::Fit& fit, const Task& task) {
   if (task.is_requested()) return {};
   Findings found = selection::trace_lidar(heading_pairs(fit), sees_all_round(fit.dataset), true, task.rules);
-  if (found.empty() || found.front().effect->name() != terms::make_angle_scale()->name()) return {};
+  if (found.empty() || !found.front().effect->bends_walls()) return {};
   found.resize(1);
   return found;
 }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <tuple>
 
 #include "calib/terms/settings.hpp"
@@ -15,32 +16,142 @@ bool is_unsigned(vehicle::Channel channel) {
          channel == vehicle::Channel::yaw_path;
 }
 
-/// Periods of both wheels, as the day goes, of one, as its brake or its motor does, or of the heading, as the
-/// wind turns it. Periods closer than settings::kCycleStep cycles per recording look alike.
-void add_periods(double duration, std::vector<SmoothTerm>& smooths) {
-  for (double cycles = settings::kFewestCycles;
-       cycles < settings::kMostCycles && duration / cycles > settings::kShortestCycle_s;
-       cycles += settings::kCycleStep)
-    for (const vehicle::Channel channel : kPeriodicChannels)
-      smooths.push_back(
-          on_basis({{vehicle::Covariate::time, channel}, 0.0, duration}, Cycle{duration / cycles}));
+/// The values of a covariate, in its unit.
+struct Range {
+  double low, high;
+};
+
+/// A covariate of the drives that are at hand.
+struct Driven {
+  vehicle::Covariate covariate;
+  Range range;
+  bool both_ways;  ///< whether the drives go forwards and backwards
+};
+
+/// A member of a family has these in place of what is usual.
+struct Member {
+  std::optional<Basis> basis = {};
+  std::size_t memory = vehicle::kUsualMemory;
+  bool with_motion = false;
+  std::optional<Range> range = {};
+};
+using Members = std::vector<Member>;
+
+/// A row: terms of one kind that are worth trying.
+struct SmoothFamily {
+  bool (*has)(vehicle::Covariate);
+  /// Empty: those that the covariate usually acts on.
+  std::vector<vehicle::Channel> channels;
+  /// @param channel the one that the members are for
+  Members (*members)(const Driven&, vehicle::Channel channel);
+};
+
+template <vehicle::Covariate kOne>
+bool is(vehicle::Covariate covariate) {
+  return covariate == kOne;
 }
 
-/// A load that is taken up or slips, a tyre that lets its air out, a lidar that is knocked: from one moment
-/// on all is different. Where it leaves little of the drive, that would hang on a few scans.
-void add_change_points(double duration, std::vector<SmoothTerm>& smooths) {
+/// An unsigned way never changes its sign with the direction: in drives both ways it has a constant that no
+/// base parameter has.
+Members usual(const Driven& driven, vehicle::Channel channel) {
+  if (driven.covariate == vehicle::Covariate::heading && is_unsigned(channel) && driven.both_ways)
+    return {{.basis = Harmonics{0, true}}};
+  return {{}};
+}
+
+Members higher_harmonics(const Driven& /*driven*/, vehicle::Channel /*channel*/) {
+  Members members;
+  for (int harmonic = kHarmonics + 1; harmonic <= settings::kHighestHarmonic; ++harmonic)
+    members.push_back({.basis = Harmonics{harmonic}});
+  return members;
+}
+
+Members one_wave(const Driven& /*driven*/, vehicle::Channel /*channel*/) { return {{.basis = Harmonics{1}}}; }
+
+Members longest_memory(const Driven& driven, vehicle::Channel /*channel*/) {
+  return {{.memory = memories_of(driven.covariate) - 1}};
+}
+
+Members relays(const Driven& driven, vehicle::Channel /*channel*/) {
+  Members members;
+  for (std::size_t memory = 0; memory < memories_of(driven.covariate); ++memory)
+    if (is_relay(driven.covariate, memory) &&
+        (memory - vehicle::kMemorySpans.size()) % settings::kEveryRelay == 0)
+      members.push_back({.basis = Relay{}, .memory = memory});
+  return members;
+}
+
+/// Periods closer than settings::kCycleStep cycles per recording look alike.
+Members cycles(const Driven& driven, vehicle::Channel /*channel*/) {
+  Members members;
+  const double duration = driven.range.high - driven.range.low;
+  for (double number = settings::kFewestCycles;
+       number < settings::kMostCycles && duration / number > settings::kShortestCycle_s;
+       number += settings::kCycleStep)
+    members.push_back({.basis = Cycle{duration / number}, .range = Range{0.0, duration}});
+  return members;
+}
+
+/// Where one leaves little of the drive, it would hang on a few scans.
+Members change_points(const Driven& driven, vehicle::Channel /*channel*/) {
+  Members members;
   for (int k = settings::kLeastPart; k <= kChangePoints - settings::kLeastPart; ++k)
-    for (const auto channel :
-         {vehicle::Channel::both_travel, vehicle::Channel::track, vehicle::Channel::way_turned})
-      smooths.push_back(on_basis({{vehicle::Covariate::time, channel}, 0.0, duration},
-                                 ChangePoint{duration * k / kChangePoints}));
+    members.push_back({.basis = ChangePoint{driven.range.high * k / kChangePoints},
+                       .range = Range{0.0, driven.range.high}});
+  return members;
 }
 
-/// A lidar's metre as it warms up, which is a matter of minutes.
-void add_fading(double duration, std::vector<SmoothTerm>& smooths) {
+Members fading(const Driven& driven, vehicle::Channel /*channel*/) {
+  Members members;
   for (const double time_constant : settings::kFadingTimes_s)
-    smooths.push_back(
-        on_basis({{vehicle::Covariate::time, vehicle::Channel::scale}, 0.0, duration}, Decay{time_constant}));
+    members.push_back({.basis = Decay{time_constant}, .range = Range{0.0, driven.range.high}});
+  return members;
+}
+
+Members patches(const Driven& /*driven*/, vehicle::Channel /*channel*/) { return {{.basis = Patches{}}}; }
+
+Members of_speed_magnitude(const Driven& driven, vehicle::Channel /*channel*/) {
+  const double most = std::max(-driven.range.low, driven.range.high);
+  return {{.with_motion = true, .range = Range{-most, most}}};
+}
+
+const std::vector<SmoothFamily>& smooth_families() {
+  using enum vehicle::Channel;
+  using vehicle::Covariate;
+  static const std::vector<SmoothFamily> kAll = {
+      {[](Covariate) { return true; }, {}, usual},
+      {vehicle::is_phase, {}, higher_harmonics},
+      // A term that comes late may look like what went before.
+      {is<Covariate::turn_acceleration>, {}, longest_memory},
+      // A term that stays until the opposite acceleration hardly resembles one that fades.
+      {[](Covariate) { return true; }, {}, relays},
+      // A drive seldom shows all headings; one wave round the circle is what few of them determine.
+      {is<Covariate::heading>, {}, one_wave},
+      // Both wheels change as the day goes, one as its brake or its motor does, the heading as the wind does.
+      {is<Covariate::time>, {kPeriodicChannels.begin(), kPeriodicChannels.end()}, cycles},
+      // A load that is taken up or slips, a tyre that lets its air out, a lidar that is knocked: from one
+      // moment on all is different.
+      {is<Covariate::time>, {both_travel, track, way_turned}, change_points},
+      // A lidar's metre as it warms up, which is a matter of minutes.
+      {is<Covariate::time>, {scale}, fading},
+      // Patches of what lies on the floor; wheels sink in, both alike.
+      {is<Covariate::position>, {both_travel}, patches},
+      // Driving and braking need not make a wheel slip alike, whichever way it goes.
+      {is<Covariate::acceleration>, {both_travel}, of_speed_magnitude},
+      {is<Covariate::left_acceleration>, {left_travel}, of_speed_magnitude},
+      {is<Covariate::right_acceleration>, {right_travel}, of_speed_magnitude},
+      {is<Covariate::turn_acceleration>, {track}, of_speed_magnitude},
+  };
+  return kAll;
+}
+
+SmoothTerm term_of(const Member& member, const Driven& driven, vehicle::Channel channel) {
+  const Range range = member.range.value_or(driven.range);
+  SmoothTerm smooth{{driven.covariate, channel}, range.low, range.high};
+  if (member.basis) smooth = on_basis(smooth, *member.basis);
+  smooth.memory = member.memory;
+  smooth.with_motion = member.with_motion;
+  return smooth;
 }
 
 void add_time_constants_about(const SmoothTerm& smooth, const Decay& decay, std::vector<SmoothTerm>& shapes) {
@@ -78,33 +189,6 @@ void add_memories_beside(const SmoothTerm& smooth, std::span<const vehicle::Driv
   }
 }
 
-/// Patches of what lies on the floor; wheels sink in, both alike.
-void add_patches(double low, double high, std::vector<SmoothTerm>& smooths) {
-  smooths.push_back(
-      on_basis({{vehicle::Covariate::position, vehicle::Channel::both_travel}, low, high}, Patches{}));
-}
-
-void add_harmonics(const SmoothTerm& smooth, int first, int last, std::vector<SmoothTerm>& smooths) {
-  for (int harmonic = first; harmonic <= last; ++harmonic)
-    smooths.push_back(on_basis(smooth, Harmonics{harmonic}));
-}
-
-/// Driving and braking need not make a wheel slip alike, whichever way it goes.
-void add_terms_of_speed_magnitude(std::span<const vehicle::DriveModel* const> models,
-                                  std::vector<SmoothTerm>& smooths) {
-  for (const vehicle::Dependence& dependence :
-       {vehicle::Dependence{vehicle::Covariate::acceleration, vehicle::Channel::both_travel},
-        {vehicle::Covariate::left_acceleration, vehicle::Channel::left_travel},
-        {vehicle::Covariate::right_acceleration, vehicle::Channel::right_travel},
-        {vehicle::Covariate::turn_acceleration, vehicle::Channel::track}}) {
-    const auto [low, high] = range_of(dependence.covariate, models);
-    const double most = std::max(-low, high);
-    if (!(most > 1e-6)) continue;
-    smooths.push_back({dependence, -most, most});
-    smooths.back().with_motion = true;
-  }
-}
-
 bool may_have_knots(const vehicle::Dependence& dependence) {
   return (is_signed_speed(dependence.covariate) && dependence.channel != vehicle::Channel::turn_path) ||
          is_acceleration(dependence.covariate);
@@ -138,34 +222,15 @@ std::vector<SmoothTerm> candidate_smooths(std::span<const vehicle::DriveModel* c
     if (models.size() > 1 && (begins_with_the_recording(covariate) || is_memory(covariate))) continue;
     const auto [low, high] = range_of(covariate, models);
     if (!(high - low > 1e-6)) continue;
-    for (const vehicle::Channel channel : channels_of(covariate)) {
-      const SmoothTerm smooth{{covariate, channel}, low, high};
-      const bool has_constant = covariate == vehicle::Covariate::heading && is_unsigned(channel) && both_ways;
-      smooths.push_back(has_constant ? on_basis(smooth, Harmonics{0, true}) : smooth);
-      if (is_phase(covariate)) add_harmonics(smooth, kHarmonics + 1, settings::kHighestHarmonic, smooths);
-      if (covariate ==
-          vehicle::Covariate::turn_acceleration) {  // what comes late may look like what went before
-        smooths.push_back(smooth);
-        smooths.back().memory = vehicle::kSwayLags.size() - 1;
-      }
-      // A term that stays until the opposite acceleration hardly resembles one that fades.
-      for (std::size_t memory = 0; memory < memories_of(covariate); ++memory)
-        if (is_relay(covariate, memory) &&
-            (memory - vehicle::kMemorySpans.size()) % settings::kEveryRelay == 0) {
-          smooths.push_back(on_basis(smooth, Relay{}));
-          smooths.back().memory = memory;
-        }
-      // A drive seldom shows all headings; one wave round the circle is what few of them determine.
-      if (covariate == vehicle::Covariate::heading) add_harmonics(smooth, 1, 1, smooths);
+    const Driven driven{covariate, {low, high}, both_ways};
+    for (const SmoothFamily& family : smooth_families()) {
+      if (!family.has(covariate)) continue;
+      for (const vehicle::Channel channel :
+           family.channels.empty() ? channels_of(covariate) : std::span(family.channels))
+        for (const Member& member : family.members(driven, channel))
+          smooths.push_back(term_of(member, driven, channel));
     }
-    if (covariate == vehicle::Covariate::time) {
-      add_periods(high - low, smooths);
-      add_change_points(high, smooths);
-      add_fading(high, smooths);
-    }
-    if (covariate == vehicle::Covariate::position) add_patches(low, high, smooths);
   }
-  add_terms_of_speed_magnitude(models, smooths);
   return smooths;
 }
 

@@ -44,6 +44,9 @@ struct LidarEffectRow {
   bool is_correctable = true;
   /// Whether the map of all scans judges it better than pairs of scans do.
   bool is_judged_in_map = false;
+  /// Whether it bends the walls of a map, as ranges that are too short would: it is sought before there is
+  /// one.
+  bool bends_walls = false;
   /// Share of the squared disagreement between scans that it may leave, at most, to be worth its freedom.
   double may_leave = 0.9965;
   /// How many deviations the mean gain on held-out pairs must lie above zero.
@@ -68,6 +71,7 @@ class LidarEffect {
   [[nodiscard]] bool is_named() const { return row_.is_named; }
   [[nodiscard]] bool is_correctable() const { return row_.is_correctable; }
   [[nodiscard]] bool is_judged_in_map() const { return row_.is_judged_in_map; }
+  [[nodiscard]] bool bends_walls() const { return row_.bends_walls; }
   [[nodiscard]] double may_leave() const { return row_.may_leave; }
   [[nodiscard]] double least_z() const { return row_.least_z; }
   [[nodiscard]] double share_of_free_term() const { return row_.share_of_free_term; }

@@ -14,6 +14,7 @@ class AngleScale final : public LidarEffect {
   static LidarEffectRow row(bool all_round) {
     return {
         .name = "angle_scale",
+        .bends_walls = true,
         // Few pairs of scans, those of wide views, show what it does: most readings stay nearly where
         // they were.
         .may_leave = all_round ? 0.85 : 0.998,
