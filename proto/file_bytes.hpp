@@ -62,6 +62,8 @@ class Gunzip {
   Gunzip(const Gunzip&) = delete;
   Gunzip& operator=(const Gunzip&) = delete;
   void feed(std::string_view packed);
+  /// @param most bytes from now on, those before included
+  void allow(std::size_t most) { most_ = most; }
   /// When nothing more comes. @return without the bytes, which have been handed over
   [[nodiscard]] Unpacked finish();
 

@@ -12,6 +12,9 @@ namespace odomcalib {
 struct UnpackLimit {
   /// Bytes. Chosen: an hour of a usual robot; more is read on request.
   static constexpr std::size_t kMost = std::size_t{256} << 20;
+  /// Bytes of a file whose text is read in pieces and takes no memory. Chosen: two hours of 1440 beams, ten
+  /// scans/s, are 800 MiB.
+  static constexpr std::size_t kMostInPieces = std::size_t{1} << 30;
   /// Times the packed size. Chosen: nine times the most among 226 packed recordings and maps (22).
   static constexpr std::size_t kMostRatio = 200;
   /// Bytes that any file may unpack to. Chosen: too little to be a burden.
@@ -22,6 +25,11 @@ struct UnpackLimit {
 
   /// Limit that somebody who trusts a file allows.
   static UnpackLimit allowed(std::size_t bytes) { return {bytes, false}; }
+
+  /// The same for a file that is read in pieces.
+  [[nodiscard]] UnpackLimit in_pieces() const {
+    return {by_size ? std::max(most, kMostInPieces) : most, by_size};
+  }
 
   /// Bytes that so many packed ones may become.
   [[nodiscard]] std::size_t of(std::size_t packed) const {

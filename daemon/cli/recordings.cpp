@@ -58,9 +58,9 @@ Recording with_nominal(Recording recording, RobotDescription robot) {
 }
 
 void add_unpack_limit(CLI::App& verb, double& limit) {
-  verb.add_option(
-          "--unpack-limit", limit,
-          "MiB that a packed file may unpack to, where it can be trusted (256, and less for small files)")
+  verb.add_option("--unpack-limit", limit,
+                  "MiB that a packed file may unpack to, where it can be trusted (256, JSON Lines 1024, and "
+                  "less for small files)")
       ->check(CLI::Range(1.0, 1e6));
 }
 

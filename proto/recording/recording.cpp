@@ -110,14 +110,14 @@ class FileContent {
       : name_(std::move(name)),
         size_(size),
         wanted_(wanted),
+        limit_(wanted.limit),
         overview_(overview),
         builder_(wanted.intensities) {}
 
   void take(std::string_view piece) {
     hash_.take(piece);
     if (first_ && is_gzip(piece))
-      unpacking_.emplace(wanted_.limit.of(size_),
-                         [this](std::string_view unpacked) { take_unpacked(unpacked); });
+      unpacking_.emplace(limit_.of(size_), [this](std::string_view unpacked) { take_unpacked(unpacked); });
     else if (first_)
       bytes_.reserve(size_);
     first_ = false;
@@ -129,7 +129,7 @@ class FileContent {
 
   Result<Recording> finish() && {
     const Unpacked unpacked = unpacking_ ? unpacking_->finish() : Unpacked{};
-    if (unpacked.over_limit) return wanted_.limit.refusal(size_, name_.string());
+    if (unpacked.over_limit) return limit_.refusal(size_, name_.string());
     if (!unpacked.whole) builder_.discard("file", unpacked.problem);
     auto recording = finished();
     if (!recording) return recording;
@@ -147,6 +147,8 @@ class FileContent {
     if (was_told || bytes_.size() < kRecognised_bytes || recognise(bytes_) != Form::jsonl) return;
     lines_.emplace(builder_).take(bytes_);
     std::string().swap(bytes_);
+    limit_ = limit_.in_pieces();
+    if (unpacking_) unpacking_->allow(limit_.of(size_));
   }
 
   Result<Recording> finished() {
@@ -193,6 +195,7 @@ class FileContent {
   std::filesystem::path name_;
   std::size_t size_;
   Wanted wanted_;
+  UnpackLimit limit_;
   Overview& overview_;
   RecordingBuilder builder_;
   Sha256 hash_;

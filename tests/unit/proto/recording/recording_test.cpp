@@ -460,6 +460,22 @@ TEST(Recording, of_a_long_file_is_the_same_in_whatever_pieces_it_comes) {
   EXPECT_EQ(discarded(whole, "line", "cut off"), 1U);
 }
 
+TEST(Recording, in_lines_may_be_longer_than_what_has_to_be_kept) {
+  const UnpackLimit limit{std::size_t{2} << 20};
+  const std::string text = long_text(60000);
+  ASSERT_GT(text.size(), limit.most);
+  const std::string lines = gzip(text).value(), other = gzip(std::string(text.size(), 'x')).value();
+  EXPECT_EQ(value_of(read_recording_bytes(lines, "long.jsonl.gz", nullptr, {}, limit)).ticks.size(),
+            60000U - 619U);
+  const auto refused = read_recording_bytes(other, "other.gz", nullptr, {}, limit);
+  ASSERT_FALSE(refused.ok());
+  EXPECT_EQ(refused.error().what, "unpacks to more than 2 MiB");
+  const auto unwanted =
+      read_recording_bytes(lines, "long.jsonl.gz", nullptr, {}, UnpackLimit::allowed(limit.most));
+  ASSERT_FALSE(unwanted.ok()) << "who states a limit means it";
+  EXPECT_EQ(unwanted.error().what, "unpacks to more than 2 MiB");
+}
+
 /// Largest memory of this process so far, MiB.
 long peak_memory() {
   rusage usage{};
