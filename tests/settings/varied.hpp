@@ -2,41 +2,90 @@
 // otherwise.
 #pragma once
 
+#include <sys/stat.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
 #include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdio>
 #include <cstdlib>
+#include <string>
 #include <type_traits>
 
 namespace odomcalib_varied {
 
 inline constexpr std::size_t kMost = 2048;
+/// s, after which a calibration with another number is given up.
+inline constexpr unsigned kPatience_s = 120;
 
-/// The number of a setting and a factor on it: ODOMCALIB_VARIED=12:0.5 halves number 12.
-/// ODOMCALIB_VARIED_READ names a file that gets the numbers that the program read while it ran, one a line.
-struct Choice {
-  int number = -1;
-  double factor = 1.0;
-  const char* read = std::getenv("ODOMCALIB_VARIED_READ");
-  std::array<bool, kMost> is_read{};
-
-  Choice() {
-    if (const char* text = std::getenv("ODOMCALIB_VARIED")) std::sscanf(text, "%d:%lf", &number, &factor);
+/// Where a program first reads a setting, it goes on in three processes: with the value as it is, with its
+/// half and with its double. What was done before is done once for all of them.
+///
+/// ODOMCALIB_VARIED names the folder in which the others work, each in its own: 12_0.5 halves number 12.
+/// A file "done" in it has the numbers that are to be left alone, one a line. Afterwards "read" has the
+/// numbers that the program has read, and "status" a line for each other process: number, factor, what wait()
+/// said.
+class Varied {
+ public:
+  Varied() {
+    if (folder_.empty()) return;
+    std::FILE* done = std::fopen((folder_ + "/done").c_str(), "r");
+    for (std::size_t number = 0; done && std::fscanf(done, "%zu", &number) == 1;)
+      if (number < kMost) done_.at(number) = true;
+    if (done) std::fclose(done);
   }
-  Choice(const Choice&) = delete;
-  Choice& operator=(const Choice&) = delete;
-  ~Choice() {
-    std::FILE* file = read ? std::fopen(read, "w") : nullptr;
-    if (!file) return;
+  Varied(const Varied&) = delete;
+  Varied& operator=(const Varied&) = delete;
+  ~Varied() {
+    std::FILE* read =
+        folder_.empty() || number_ >= 0 ? nullptr : std::fopen((folder_ + "/read").c_str(), "w");
+    if (!read) return;
     for (std::size_t k = 0; k < kMost; ++k)
-      if (is_read.at(k)) std::fprintf(file, "%zu\n", k);
-    std::fclose(file);
+      if (is_read_.at(k)) std::fprintf(read, "%zu\n", k);
+    std::fclose(read);
   }
+
+  double factor_on(int number) {
+    bool& is_read = is_read_.at(static_cast<std::size_t>(number));
+    if (!is_read && !folder_.empty() && number_ < 0 && !done_.at(static_cast<std::size_t>(number)))
+      for (const char* factor : {"0.5", "2"})
+        if (is_other_process(number, factor)) break;
+    is_read = true;
+    return number == number_ ? factor_ : 1.0;
+  }
+
+ private:
+  /// Whether this is the process that goes on with the number times the factor; the one before waits for it.
+  bool is_other_process(int number, const char* factor) {
+    const pid_t child = fork();
+    if (child != 0) {
+      int status = -1;
+      if (child > 0) waitpid(child, &status, 0);
+      if (std::FILE* file = std::fopen((folder_ + "/status").c_str(), "a")) {
+        std::fprintf(file, "%d %s %d\n", number, factor, status);
+        std::fclose(file);
+      }
+      return false;
+    }
+    number_ = number;
+    factor_ = std::atof(factor);
+    const std::string own = folder_ + "/" + std::to_string(number) + "_" + factor;
+    mkdir(own.c_str(), 0755);
+    if (chdir(own.c_str()) != 0) _exit(126);
+    alarm(kPatience_s);
+    return true;
+  }
+
+  std::string folder_ = std::getenv("ODOMCALIB_VARIED") ? std::getenv("ODOMCALIB_VARIED") : "";
+  int number_ = -1;
+  double factor_ = 1.0;
+  std::array<bool, kMost> is_read_{}, done_{};
 };
 
-inline Choice& choice() {
-  static Choice only;
+inline Varied& varied() {
+  static Varied only;
   return only;
 }
 
@@ -49,10 +98,9 @@ constexpr Value odomcalib_varied_value(const Value& value) {
     return value;
   } else {
     if (std::is_constant_evaluated()) return value;
-    odomcalib_varied::Choice& choice = odomcalib_varied::choice();
-    choice.is_read.at(kNumber) = true;
-    if (choice.number != kNumber) return value;
-    const double changed = static_cast<double>(value) * choice.factor;
+    const double factor = odomcalib_varied::varied().factor_on(kNumber);
+    if (factor == 1.0) return value;
+    const double changed = static_cast<double>(value) * factor;
     if constexpr (std::is_floating_point_v<Value>)
       return static_cast<Value>(changed);
     else  // A count keeps at least one, and the half of one is one.

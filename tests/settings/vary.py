@@ -2,13 +2,13 @@
 """Varies the numbers that calib decides by, and shows which of them change a calibration.
 
 Usage: tests/settings/vary.py prepare --into TREE                       numbers of TREE, a copy of this tree, obey the environment
-       tests/settings/vary.py run BIN --rows FILE [--jobs N]            solves recordings with each number halved and doubled
+       tests/settings/vary.py run BIN --rows FILE [--recordings NAME...]  solves recordings with each number halved and doubled
        tests/settings/vary.py table --rows FILE...                      all numbers as a page, with what each changes
        tests/settings/vary.py --self-test
 
-A number is a constant of a file calib/*/settings.hpp. In TREE each place that uses one asks the environment (varied.hpp), so that
-one build serves all of them; what the compiler has to know (sizes of arrays, constants made of constants) stays. BIN holds
-odomcalibctl and odomcalib-sim-record of TREE. Recordings are simulated, as tests/regression/compare makes them. A number that the
+A number is a constant of a file calib/*/settings.hpp. In TREE each place that uses one may go on with its half or its double
+(varied.hpp), so that one build serves all of them; what the compiler has to know (sizes of arrays, constants made of constants)
+stays. BIN holds odomcalibctl and odomcalib-sim-record of TREE. Recordings are simulated, as tests/regression/compare makes them. A number that the
 program does not read while it solves a recording is not varied there. FILE gets a line of JSON a number, factor and recording, and
 is continued where it ends.
 
@@ -26,9 +26,9 @@ import json
 import os
 import pathlib
 import re
+import shutil
 import subprocess
 import sys
-import tempfile
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 FACTORS = (0.5, 2.0)
@@ -98,45 +98,63 @@ def prepare(tree):
     print(f"{len(numbers)} numbers")
 
 
-def solved(program, recording, environment):
-    """Exit status and digest of the calibration; with the numbers that were read."""
-    with tempfile.TemporaryDirectory() as folder:
-        out, read = pathlib.Path(folder) / "cal.json", pathlib.Path(folder) / "read"
-        try:
-            done = subprocess.run([program, "solve", recording, "--out", out], stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, check=False,
-                                  timeout=300, env={**os.environ, **environment, "ODOMCALIB_VARIED_READ": str(read)})
-        except subprocess.TimeoutExpired:
-            return "time", "", []
-        digest = hashlib.sha256((out.read_bytes() if out.exists() else b"") + done.stderr).hexdigest()
-        return done.returncode, digest, [int(line) for line in read.read_text().split()] if read.exists() else []
-
-
-def run(bins, rows, jobs):
-    names = json.loads((bins.parents[1] / "varied.json").read_text(encoding="utf-8"))
-    folder = rows.with_suffix(".recordings")
+def solve(program, recording, folder, environment=None):
+    """What wait() said of the program, and the digest of its calibration."""
     folder.mkdir(exist_ok=True)
-    done = collections.defaultdict(set)
+    done = subprocess.run([program, "solve", recording, "--out", "cal.json"], cwd=folder, stdout=subprocess.DEVNULL,
+                          stderr=subprocess.DEVNULL, check=False, env={**os.environ, **(environment or {})})
+    return done.returncode << 8, digest_of(folder)
+
+
+def digest_of(folder):
+    calibration = folder / "cal.json"
+    return hashlib.sha256(calibration.read_bytes() if calibration.exists() else b"").hexdigest()
+
+
+def run_recording(bins, name, folder, names, solved, write):
+    """Solves a recording with every number that it reads; `solved` are the (setting, factor) of before."""
+    file = folder / f"{name}.jsonl.gz"
+    if not file.exists():
+        subprocess.run([bins / "odomcalib-sim-record", *RECORDINGS[name], "--out", file], check=True, stdout=subprocess.DEVNULL)
+    work = folder / name
+    work.mkdir(exist_ok=True)
+    plain = solve(bins / "odomcalibctl", file, work / "plain")
+
+    def harvest():
+        lines = (work / "status").read_text(encoding="utf-8").splitlines() if (work / "status").exists() else []
+        for number, factor, status in map(str.split, lines):
+            own = work / f"{number}_{factor}"
+            write(setting=names[int(number)], factor=float(factor), recording=name, changed=(int(status), digest_of(own)) != plain)
+            solved.add((names[int(number)], float(factor)))
+            shutil.rmtree(own)
+        (work / "status").unlink(missing_ok=True)
+
+    harvest()  # of a run that was stopped
+    whole = [str(number) for number, setting in enumerate(names) if all((setting, factor) in solved for factor in FACTORS)]
+    (work / "done").write_text("\n".join(whole), encoding="utf-8")
+    solve(bins / "odomcalibctl", file, work / "plain", {"ODOMCALIB_VARIED": str(work)})
+    harvest()
+    read = set(map(int, (work / "read").read_text(encoding="utf-8").split()))
+    for number, setting in enumerate(names):
+        if number not in read and not any((setting, factor) in solved for factor in (*FACTORS, None)):
+            write(setting=setting, factor=None, recording=name, changed=False)
+    print(f"{name}: {len(read)} numbers read", file=sys.stderr)
+
+
+def run(bins, rows, jobs, recordings):
+    names = json.loads((bins.parents[1] / "varied.json").read_text(encoding="utf-8"))
+    folder = rows.resolve().with_suffix(".recordings")
+    folder.mkdir(exist_ok=True)
+    solved = collections.defaultdict(set)
     if rows.exists():
         for line in map(json.loads, rows.read_text(encoding="utf-8").splitlines()):
-            done[line["recording"]].add((line["setting"], line["factor"]))
+            solved[line["recording"]].add((line["setting"], line["factor"]))
     with concurrent.futures.ThreadPoolExecutor(jobs) as pool, rows.open("a", encoding="utf-8") as out:
         def write(**row):
             out.write(json.dumps(row) + "\n")
             out.flush()
 
-        for recording, arguments in RECORDINGS.items():
-            file = folder / f"{recording}.jsonl.gz"
-            if not file.exists():
-                subprocess.run([bins / "odomcalib-sim-record", *arguments, "--out", file], check=True, stdout=subprocess.DEVNULL)
-            status, plain, read = solved(bins / "odomcalibctl", file, {})
-            for number, name in enumerate(names):
-                if number not in read and (name, None) not in done[recording]:
-                    write(setting=name, factor=None, recording=recording, changed=False)
-            trials = [(number, factor) for number in read for factor in FACTORS if (names[number], factor) not in done[recording]]
-            solve = lambda trial: solved(bins / "odomcalibctl", file, {"ODOMCALIB_VARIED": f"{trial[0]}:{trial[1]}"})
-            for (number, factor), (other_status, digest, _) in zip(trials, pool.map(solve, trials)):
-                write(setting=names[number], factor=factor, recording=recording, changed=(digest, other_status) != (plain, status))
-            print(f"{recording}: {len(read)} numbers read, {len(trials)} solved", file=sys.stderr)
+        list(pool.map(lambda name: run_recording(bins, name, folder, names, solved[name], write), recordings))
 
 
 def described():
@@ -199,6 +217,7 @@ def main():
     parser.add_argument("--into", type=pathlib.Path)
     parser.add_argument("--rows", nargs="+", type=pathlib.Path)
     parser.add_argument("--jobs", type=int, default=os.cpu_count() or 1)
+    parser.add_argument("--recordings", nargs="+", choices=RECORDINGS, default=list(RECORDINGS))
     parser.add_argument("--self-test", action="store_true")
     arguments = parser.parse_args()
     if arguments.self_test:
@@ -206,7 +225,7 @@ def main():
     elif arguments.what == "prepare" and arguments.into:
         prepare(arguments.into.resolve())
     elif arguments.what == "run" and arguments.bin and arguments.rows:
-        run(arguments.bin.resolve(), arguments.rows[0], arguments.jobs)
+        run(arguments.bin.resolve(), arguments.rows[0], arguments.jobs, arguments.recordings)
     elif arguments.what == "table" and arguments.rows:
         table(arguments.rows)
     else:
