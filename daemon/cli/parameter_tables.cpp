@@ -151,8 +151,12 @@ Document describe_parameters(const ordered_json& parameters) {
   return {"Parameters in force", {parameter_section(parameters)}};
 }
 
-Document describe_history(const std::vector<WriteBack>& entries) {
-  return {"Write-backs, newest first", {{"", {}, history_table(entries)}}};
+Document describe_history(const std::vector<WriteBack>& entries, std::size_t not_understood) {
+  Section section{"", {}, history_table(entries)};
+  if (not_understood > 0)
+    section.lines.push_back(
+        fmt::format("{} more of another version of odomcalibd: history --json shows them", not_understood));
+  return {"Write-backs, newest first", {std::move(section)}};
 }
 
 namespace {

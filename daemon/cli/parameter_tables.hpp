@@ -15,7 +15,8 @@ namespace odomcalib::cli {
 /// @param parameters as GetParameters answers
 Document describe_parameters(const nlohmann::ordered_json& parameters);
 /// @param entries newest first
-Document describe_history(const std::vector<WriteBack>& entries);
+/// @param not_understood entries that are in no form that is known here
+Document describe_history(const std::vector<WriteBack>& entries, std::size_t not_understood = 0);
 /// Rows of drive_figures(), with what odometry was off by against the lidar.
 Table trial_table(const DriveTrial& trial);
 /// "Written to the controller" and the drives that were to prove it, for a report; none where there is no

@@ -72,9 +72,10 @@ void print_parameters(const ordered_json& parameters, const Session& session) {
 
 void print_history(const ordered_json& answer, const Session& session) {
   std::vector<WriteBack> entries;
-  for (const auto& body : answer.value("entries", ordered_json::array()))
+  const auto bodies = answer.value("entries", ordered_json::array());
+  for (const auto& body : bodies)
     if (auto entry = write_back_from(body)) entries.push_back(std::move(*entry));
-  print_text(describe_history(entries), session.legend);
+  print_text(describe_history(entries, bodies.size() - entries.size()), session.legend);
   const std::string folder = answer.value("calibrations", "");
   if (!folder.empty())
     print_line("What changed between the calibrations of this robot: odomcalibctl compare " + folder +

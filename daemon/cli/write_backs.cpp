@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "daemon/cli/client.hpp"
+#include "daemon/cli/output.hpp"
 #include "daemon/cli/settings.hpp"
 #include "daemon/config/config.hpp"
 #include "daemon/writeback/calibration_in_force.hpp"
@@ -46,6 +47,8 @@ Result<std::vector<WriteBack>> entries_of_folder(const fs::path& state_folder) {
   std::vector<WriteBack> entries;
   const History history(folder);
   for (const HistoryEntry& entry : history.entries()) entries.push_back({entry, ""});
+  for (const fs::path& path : history.unreadable())
+    warn(path.string() + ": holds no write-back that can be read; left out");
   return entries;
 }
 

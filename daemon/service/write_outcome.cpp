@@ -123,6 +123,9 @@ void settle_from_journal(RobotParts& parts) {
     values.history.keep(*end.entry);
     if (!end.noted) values.unwritten.push_back(*end.entry);
   }
+  for (const std::filesystem::path& path : values.history.unreadable())
+    parts.outbox.event(messages::Severity::warning, "history",
+                       path.string() + ": holds no write-back that can be read; rollback passes over it");
   const auto& last = values.transaction.journal().last();
   Settlement end;
   end.calibration = last && last->state == JournalState::commit ? last->calibration : "";

@@ -90,7 +90,10 @@ std::vector<std::filesystem::path> History::files() const {
 History::History(std::filesystem::path folder) : folder_(std::move(folder)) {
   for (const auto& path : files()) {
     newest_ = std::max(newest_, number_of(path));
-    if (auto entry = entry_from(path)) entries_.push_back(std::move(*entry));
+    if (auto entry = entry_from(path))
+      entries_.push_back(std::move(*entry));
+    else
+      unreadable_.push_back(path);
   }
 }
 
@@ -111,6 +114,7 @@ Result<void> History::write(const HistoryEntry& entry) const {
 
 void History::keep(HistoryEntry entry) {
   newest_ = std::max(newest_, number_of(entry.id));
+  std::erase_if(unreadable_, [&](const std::filesystem::path& one) { return one.stem() == entry.id; });
   std::erase_if(entries_, [&](const HistoryEntry& one) { return one.id == entry.id; });
   const auto older = std::find_if(entries_.begin(), entries_.end(), [&](const HistoryEntry& one) {
     return number_of(one.id) < number_of(entry.id);

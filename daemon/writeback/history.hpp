@@ -40,7 +40,7 @@ class History {
  public:
   static constexpr std::size_t kKept = writeback::settings::kKeptEntries;
 
-  /// Reads what is there; entries that cannot be read are left out.
+  /// Reads what is there; entries that cannot be read are left out, see unreadable().
   /// @param folder of the state directory; made on the first entry
   explicit History(std::filesystem::path folder);
 
@@ -56,6 +56,8 @@ class History {
 
   /// Newest first.
   [[nodiscard]] const std::vector<HistoryEntry>& entries() const { return entries_; }
+  /// Files that are there and hold no entry that can be read, newest first.
+  [[nodiscard]] const std::vector<std::filesystem::path>& unreadable() const { return unreadable_; }
   [[nodiscard]] std::optional<HistoryEntry> find(const std::string& id) const;
   [[nodiscard]] std::optional<HistoryEntry> newest_committed() const;
 
@@ -64,6 +66,7 @@ class History {
 
   std::filesystem::path folder_;
   std::vector<HistoryEntry> entries_;
+  std::vector<std::filesystem::path> unreadable_;
   unsigned newest_ = 0;  // number, also of an entry that cannot be read
 };
 

@@ -2,6 +2,8 @@
 // what: the real driver on the simulated drive, in virtual time.
 #include <unistd.h>
 
+#include <fstream>
+
 #include "daemon/writeback/history.hpp"
 #include "daemon/writeback/journal.hpp"
 #include "tests/integration/service_loop.hpp"
@@ -105,6 +107,14 @@ TEST_F(WayHome, the_band_ends_15_percent_from_nominal_on_both_sides) {
   expect_refused(set_track(0.4 * 1.151), {"15 %"});
   ASSERT_EQ(set_track(0.4 * 0.851).error, "") << "however far that is from what is present";
   expect_refused(set_track(0.4 * 0.849), {"15 %"});
+}
+
+TEST_F(WayHome, names_what_it_passes_over_because_it_cannot_be_read) {
+  ASSERT_EQ(set_track(0.41).error, "");
+  std::ofstream(folder_ / "state" / "history" / "0000.json") << "{";
+  restart();
+  EXPECT_NE(events_.find("0000.json: holds no write-back that can be read"), std::string::npos) << events_;
+  EXPECT_EQ(events_.find("0001.json"), std::string::npos) << events_;
 }
 
 // 20 % off is what a drive of another robot may hold: it is put right in one step.

@@ -505,6 +505,11 @@ TEST(WriteBack, history_says_when_by_whom_and_what_was_proven) {
     EXPECT_THAT(text, HasSubstr(said));
 }
 
+TEST(WriteBack, history_says_how_many_it_does_not_understand) {
+  EXPECT_THAT(to_text(describe_history({}, 2), true, 200), HasSubstr("2 more of another version"));
+  EXPECT_THAT(to_text(describe_history({}), true, 200), Not(HasSubstr("more")));
+}
+
 TEST(WriteBack, a_rollback_says_where_it_goes_and_an_apply_what_is_vouched_for) {
   const auto result =
       nlohmann::ordered_json::parse(R"({"outcome":"dry_run","before":{},"after":{},"parameters":[],

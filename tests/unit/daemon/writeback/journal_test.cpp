@@ -383,6 +383,23 @@ TEST(History, finds_the_newest_that_was_committed_and_remembers_the_device) {
   EXPECT_EQ(history.newest_committed()->device, "0xfee/0xd15/1");
 }
 
+TEST(History, names_the_files_that_it_cannot_read) {
+  const TemporaryFolder folder;
+  const auto path = folder / "history";
+  History whole(path);
+  for (int i = 0; i < 3; ++i) add(whole, {});
+  EXPECT_TRUE(History(path).unreadable().empty());
+  std::ofstream(path / "0002.json") << R"({"id":"0002","time":1)";  // cut off
+  History history(path);
+  EXPECT_EQ(history.unreadable(), std::vector{path / "0002.json"});
+  ASSERT_EQ(history.entries().size(), 2U);
+  EXPECT_EQ(history.numbered({}).id, "0004");
+  HistoryEntry of_the_journal;
+  of_the_journal.id = "0002";
+  history.keep(of_the_journal);
+  EXPECT_TRUE(history.unreadable().empty()) << "it was made again";
+}
+
 class FullHistory : public testing::Test {
  protected:
   void SetUp() override {
