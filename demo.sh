@@ -5,7 +5,7 @@
 # no catalogue. At the end the truth is shown beside what was found, and the error before and after on a fresh drive.
 #
 # Works on a fresh Debian 12 as root, or as a user with sudo; installs and builds what is missing. Robot and service run on
-# one clock, which is as fast as the processor while the robot moves. Five to seven minutes on two processors the first time, one after
+# one clock, which is as fast as the processor while the robot moves. Four to seven minutes on two processors the first time, one after
 # that.
 #
 # usage: ./demo.sh [--real-time] [--full] [--effect NAME] [SEED]
