@@ -60,4 +60,10 @@ bool CallParameters::flag(const char* name) {
   return false;
 }
 
+void CallParameters::only(std::span<const std::string> names) {
+  if (!object_->is_object()) return;
+  for (const auto& [name, value] : object_->items())
+    if (std::find(names.begin(), names.end(), name) == names.end()) reject(name);
+}
+
 }  // namespace odomcalib

@@ -4,6 +4,7 @@
 
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <span>
 #include <string>
 
 namespace odomcalib {
@@ -26,9 +27,12 @@ class CallParameters {
   /// The member, or null where there is none.
   const nlohmann::ordered_json& member(const char* name) const;
 
+  /// Rejects what is of another name: a switch that is misspelt must not be left out in silence.
+  void only(std::span<const std::string> names);
+
   /// Notes that the member is wrong, unless one was before.
   void reject(const std::string& name);
-  /// Path of the first member that is missing or of a wrong type.
+  /// Path of the first member that is missing, of a wrong type or unknown.
   [[nodiscard]] const std::optional<std::string>& wrong() const { return wrong_; }
 
  private:

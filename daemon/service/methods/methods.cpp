@@ -5,6 +5,7 @@
 
 #include "daemon/service/call_parameters.hpp"
 #include "daemon/service/status_report.hpp"
+#include "proto/control/signatures.hpp"
 
 namespace odomcalib {
 namespace {
@@ -69,6 +70,13 @@ Outcome begin(const Method& method, const Context& context, const Request& reque
 }
 
 Outcome outcome_of(const Method& method, Context& context, const Call& call) {
+  if (method.when == When::when_idle) {  // it moves the robot, or writes
+    auto known = control::parameters_of(method.name, control::interface_description());
+    known.emplace_back("lease");  // does no harm where none is needed
+    CallParameters given(call.parameters);
+    given.only(known);
+    if (given.wrong()) return WrongParameter{*given.wrong()};
+  }
   Reading read = method.handle(context, call);
   if (auto* outcome = std::get_if<Outcome>(&read)) return std::move(*outcome);
   return begin(method, context, std::get<Request>(read));

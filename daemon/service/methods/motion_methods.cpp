@@ -205,6 +205,10 @@ Reading motion_request(Context& context, const Call& call, routines::Plan plan, 
                  }};
 }
 
+const std::vector<std::string> kOfManoeuvre = {"manoeuvre", "quick", "effects", "with"};
+const std::vector<std::string> kOfWholeDrive = {"manoeuvre", "quick",  "effects", "with", "distance",
+                                                "speed",     "repeat", "turns",   "rate"};
+
 // Straight, spin and pattern as one motion in one recording, or a single manoeuvre that goes with earlier
 // recordings.
 Result<routines::Plan> calibration_plan(const Config& config, const RobotDescription& robot,
@@ -214,7 +218,9 @@ Result<routines::Plan> calibration_plan(const Config& config, const RobotDescrip
                                          .track_width = robot.track_width,
                                          .quick = options.flag("quick"),
                                          .limits = config.limits};
-  if (const std::string name = options.text("manoeuvre", ""); !name.empty()) {
+  const std::string name = options.text("manoeuvre", "");
+  options.only(name.empty() ? kOfWholeDrive : kOfManoeuvre);
+  if (!name.empty()) {
     auto plan = routines::manoeuvre_plan(name, pattern);
     if (!plan) return out_of_range("there is no manoeuvre \"" + name + "\"");
     return std::move(*plan);
@@ -253,6 +259,7 @@ Reading straight(Context& context, const Call& call) {
   options.speed = given.number("speed", options.speed);
   options.repeat = given.whole("repeat", 1);
   options.one_way = given.flag("one_way");
+  (void)given.flag("square");
   options.limits = context.parts.config.limits;
   (void)given.flag("dry_run");
   if (given.wrong()) return WrongParameter{*given.wrong()};
