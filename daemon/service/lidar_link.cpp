@@ -38,8 +38,11 @@ Result<LidarLink::Address> LidarLink::address_of(const std::string& device, cons
   if (parts.scheme == "tcp" && type.port != 0) return Address{true, with_port(parts.path, type.port), 0, {}};
   const unsigned baud = number_of(parts.option("baud", std::to_string(type.baud)));
   const std::string dtr = parts.option("dtr", type.dtr ? "1" : "0");
-  if (parts.scheme == "serial" && type.baud != 0 && baud != 0 && (dtr == "0" || dtr == "1"))
-    return Address{false, parts.path, baud, {dtr == "1", true}};
+  if (parts.scheme == "serial" && type.baud != 0 && baud == 0) return drivers::baud_of(parts).error();
+  if (parts.scheme == "serial" && type.baud != 0 && dtr != "0" && dtr != "1")
+    return Error{ErrorCode::usage, "\"dtr=" + dtr + "\" is neither 0 nor 1", device,
+                 "correct lidar.device in the configuration"};
+  if (parts.scheme == "serial" && type.baud != 0) return Address{false, parts.path, baud, {dtr == "1", true}};
   const std::string serial = "\"serial:/dev/ttyUSB0?baud=" + std::to_string(type.baud) + "\"";
   const std::string network = "\"tcp:192.168.0.10:" + std::to_string(type.port) + "\"";
   return Error{ErrorCode::usage,

@@ -1,13 +1,27 @@
 #include <algorithm>
 #include <array>
 #include <charconv>
+#include <initializer_list>
 
 #include "drivers/serial/port.hpp"
 
 namespace odomcalib::drivers {
 namespace {
 
-constexpr std::array<const char*, 4> kSchemes = {"socketcan", "slcan", "serial", "tcp"};
+struct Scheme {
+  const char* name;
+  std::initializer_list<const char*> options;
+  const char* remedy;  ///< for an option that it does not have
+};
+
+constexpr std::initializer_list<const char*> kOfSlcan = {"bitrate", "baud", "timestamps"};
+constexpr std::initializer_list<const char*> kOfSerial = {"baud", "dtr"};
+constexpr std::array<Scheme, 4> kSchemes = {{
+    {"socketcan", {}, "the interface has its bit rate already: ip link set can0 up type can bitrate 500000"},
+    {"slcan", kOfSlcan, "slcan takes bitrate, baud and timestamps"},
+    {"serial", kOfSerial, "serial takes baud and, for lidars, dtr"},
+    {"tcp", {}, "tcp takes none: tcp:HOST:PORT"},
+}};
 
 Error bad_device(const std::string& text, const std::string& what) {
   return {ErrorCode::usage, what, "device \"" + text + "\"",
@@ -44,14 +58,20 @@ Result<DeviceString> parse_device(const std::string& text) {
   if (colon == std::string::npos) return bad_device(text, "no scheme (the part before a colon)");
   DeviceString out;
   out.scheme = text.substr(0, colon);
-  if (std::find(kSchemes.begin(), kSchemes.end(), out.scheme) == kSchemes.end())
-    return bad_device(text, "unknown scheme \"" + out.scheme + "\"");
+  const auto scheme = std::find_if(kSchemes.begin(), kSchemes.end(),
+                                   [&](const Scheme& one) { return out.scheme == one.name; });
+  if (scheme == kSchemes.end()) return bad_device(text, "unknown scheme \"" + out.scheme + "\"");
   const std::size_t question = std::min(text.find('?', colon), text.size());
   out.path = text.substr(colon + 1, question - colon - 1);
   if (out.path.empty()) return bad_device(text, "no path after \"" + out.scheme + ":\"");
   const bool has_options = question < text.size();
   if (has_options && (question + 1 == text.size() || !parse_options(text.substr(question + 1), out)))
     return bad_device(text, "options after \"?\" must be key=value, each key once, joined by &");
+  for (const auto& [key, value] : out.options)
+    if (std::none_of(scheme->options.begin(), scheme->options.end(),
+                     [&](const char* known) { return key == known; }))
+      return Error{ErrorCode::usage, "unknown option \"" + key + "\"", "device \"" + text + "\"",
+                   scheme->remedy};
   return out;
 }
 

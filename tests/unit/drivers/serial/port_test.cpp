@@ -76,11 +76,24 @@ TEST(DeviceString, is_taken_apart) {
 TEST(DeviceString, that_is_wrong_is_refused_with_an_example) {
   for (const std::string text :
        {"", "can0", "usb:/dev/x", "serial:", "serial:?baud=1", "serial:/dev/x?", "serial:/dev/x?baud",
-        "serial:/dev/x?=1", "serial:/dev/x?baud=", "serial:/dev/x?a=1&a=2", ":x"}) {
+        "serial:/dev/x?=1", "serial:/dev/x?baud=", "serial:/dev/x?baud=1&baud=2", ":x"}) {
     const auto device = parse_device(text);
     ASSERT_FALSE(device.ok()) << text;
     EXPECT_EQ(device.error().code, ErrorCode::usage);
     EXPECT_NE(device.error().text().find("serial:/dev/ttyUSB0"), std::string::npos);
+  }
+}
+
+TEST(DeviceString, has_no_option_that_nobody_looks_at) {
+  for (const auto& [text, said] : {std::pair("slcan:/dev/x?bit_rate=250000", "takes bitrate, baud"),
+                                   {"socketcan:can0?bitrate=250000", "ip link set"},
+                                   {"serial:/dev/x?boud=115200", "takes baud"},
+                                   {"tcp:host:2112?baud=1", "tcp:HOST:PORT"}}) {
+    const auto device = parse_device(text);
+    ASSERT_FALSE(device.ok()) << text;
+    EXPECT_EQ(device.error().code, ErrorCode::usage);
+    EXPECT_NE(device.error().what.find("unknown option"), std::string::npos);
+    EXPECT_NE(device.error().remedy.find(said), std::string::npos) << device.error().remedy;
   }
 }
 
