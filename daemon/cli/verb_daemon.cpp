@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "daemon/cli/answers.hpp"
 #include "daemon/cli/client.hpp"
 #include "daemon/cli/document.hpp"
 #include "daemon/cli/exit_codes.hpp"
@@ -29,6 +30,9 @@ struct Question {
   std::string member;    ///< of the answer that is printed; empty: all of it
   std::string document;  ///< of the answer
   Printer print;
+
+  /// Member without which the answer is none.
+  [[nodiscard]] std::string needed() const { return document == "history" ? "entries" : member; }
 };
 
 /// The state is a document by itself: its members are those of the answer's only one.
@@ -40,7 +44,7 @@ ordered_json document_of(const ordered_json& answer, const Question& question) {
 int status_of(const ordered_json& body, const Question& question) {
   if (question.document != "checks") return kDone;
   for (const auto& check : body.value(question.member, ordered_json::array()))
-    if (check.value("outcome", "") == "fail") return kFailure;
+    if (stands_in_the_way(check)) return kFailure;
   return kDone;
 }
 
@@ -49,7 +53,9 @@ int ask(const Session& session, const Question& question) {
   if (!client) return report_error(client.error(), session.json);
   const auto answer = client.value().call(question.method);
   if (!answer) return report_error(answer.error(), session.json);
-  auto body = ordered_json::parse(answer.value(), nullptr, false);
+  auto known = answer_with(answer.value(), question.method, question.needed());
+  if (!known) return report_error(known.error(), session.json);
+  ordered_json body = std::move(known).value();
   if (question.document == "history") name_users(body["entries"]);
   if (session.json != JsonMode::off)
     print_document(question.document, document_of(body, question), session.json);

@@ -9,6 +9,7 @@
 #include <string>
 #include <thread>
 
+#include "daemon/cli/answers.hpp"
 #include "daemon/cli/client.hpp"
 #include "daemon/cli/exit_codes.hpp"
 #include "daemon/cli/numbers.hpp"
@@ -49,10 +50,9 @@ Result<ordered_json> answer_of(Client& client, const char* method, const char* m
   const auto within = static_cast<int>(deadline.left(settings::kAnswerOfDaemon).count());
   const auto answer = client.call(method, ordered_json::object(), within);
   if (!answer) return answer.error();
-  const auto body = ordered_json::parse(answer.value(), nullptr, false);
-  if (!body.is_object() || !body.contains(member))
-    return Error{ErrorCode::format, std::string("the daemon's answer has no ") + member, method, ""};
-  return body[member];
+  auto body = answer_with(answer.value(), method, member);
+  if (!body) return body.error();
+  return std::move(body).value()[member];
 }
 
 /// Missing conditions, in words for people; empty: none. Errors: those of the client.
@@ -67,8 +67,9 @@ Result<std::string> missing_for(const std::string& socket, bool ready, const Dea
   const auto checks = answer_of(client.value(), "Check", "checks", deadline);
   if (!checks) return checks.error();
   for (const auto& check : checks.value())
-    if (check.value("outcome", "") == "fail")
-      missing += (missing.empty() ? "" : "; ") + check.value("name", "") + ": " + check.value("found", "");
+    if (stands_in_the_way(check))
+      missing +=
+          (missing.empty() ? "" : "; ") + check.value("name", "a check") + ": " + check.value("found", "");
   return missing;
 }
 
