@@ -244,9 +244,20 @@ Result<Proposal> spin_proposal(const DrivenMoves& driven, const std::vector<doub
   return proposal;
 }
 
+double side_of(const DrivenMoves& driven) {
+  double longest = 0.0;
+  for (const auto& move : driven.moves)
+    if (const auto& told = move["odometry"]; told.is_array())
+      longest = std::max(longest, std::hypot(told[0].get<double>(), told[1].get<double>()));
+  return longest;
+}
+
 Result<Proposal> square_proposal(const DrivenMoves& driven, double side) {
   std::vector<SquarePair> pairs;
   const std::size_t count = driven.rounds.size() / 2;
+  if (count == 0)
+    return Error{ErrorCode::usage, "no squares were driven", "--square",
+                 "leave it out, or drive: odomcalibctl straight --square"};
   for (std::size_t k = 0; k < count; ++k) {
     const auto ccw = run_of(driven, 2 * k), cw = run_of(driven, 2 * k + 1);
     if (ccw && cw) pairs.push_back({*ccw, *cw});

@@ -39,7 +39,9 @@ struct Proposal {
 Result<Proposal> straight_proposal(const DrivenMoves& driven, const std::vector<double>& measured);
 /// @param measured rad, positive, of every turn: one value for each, or one for all; empty: by the lidar
 Result<Proposal> spin_proposal(const DrivenMoves& driven, const std::vector<double>& measured);
-/// @param side m
+/// m, of the squares that were driven, by odometry.
+double side_of(const DrivenMoves& driven);
+/// @param side m. Error usage: no squares were driven.
 Result<Proposal> square_proposal(const DrivenMoves& driven, double side);
 
 /// As the calibration file has it.

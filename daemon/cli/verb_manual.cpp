@@ -29,6 +29,7 @@ using nlohmann::ordered_json;
 struct ManualOptions {
   Consent consent;
   double distance = 1.0, turns = 1.0;
+  bool distance_is_stated = false;
   std::string direction = "both";
   int repeat = 1;
   bool one_way = false, square = false;
@@ -204,6 +205,10 @@ int run(const Session& session, const ManualOptions& options, const std::vector<
   if (options.of.empty())
     return finish_manual(session, options,
                          drive(session, options, motions, unit, std::move(measured).value(), propose));
+  if (asks(options))
+    return report_error({ErrorCode::usage, "nobody is asked about moves that were driven before", "--of",
+                         "state what was measured, one value or one for each move"},
+                        session.json);
   auto driven = read_moves(options.of);
   if (!driven) return report_error(driven.error(), session.json);
   auto proposal = propose(driven.value(), measured.value());
@@ -217,9 +222,14 @@ int straight(const Session& session, const ManualOptions& options) {
     return report_error({ErrorCode::usage, "a square is measured by the lidar, and ends where it began",
                          "--square", "leave --measured and --one-way out"},
                         session.json);
-  const auto propose = [side = std::abs(options.distance), square = options.square](
-                           const DrivenMoves& driven, const std::vector<double>& measured) {
-    return square ? square_proposal(driven, side) : straight_proposal(driven, measured);
+  if (!options.of.empty() && !options.square && options.distance_is_stated)
+    return report_error({ErrorCode::usage, "the moves were driven before", "--distance",
+                         "leave it out beside --of, where no side of a square is meant"},
+                        session.json);
+  const auto propose = [&options](const DrivenMoves& driven, const std::vector<double>& measured) {
+    if (!options.square) return straight_proposal(driven, measured);
+    const bool is_known = options.of.empty() || options.distance_is_stated;
+    return square_proposal(driven, is_known ? std::abs(options.distance) : side_of(driven));
   };
   return run(session, options, straight_motions(options), 1.0, propose);
 }
@@ -243,13 +253,16 @@ int spin(const Session& session, const ManualOptions& options) {
   return run(session, options, spin_motions(options), 1.0 / kDegrees, spin_proposal);
 }
 
-void add_common(CLI::App& verb, const std::shared_ptr<ManualOptions>& options) {
+/// @return --of, which excludes what only a drive heeds
+CLI::Option* add_common(CLI::App& verb, const std::shared_ptr<ManualOptions>& options) {
   add_consent(verb, options->consent);
-  verb.add_option("--repeat", options->repeat, "times at most; fewer when more would not make it better")
-      ->check(CLI::Range(1, routines::settings::kMostRepeats))
-      ->capture_default_str();
-  verb.add_option("--of", options->of, "nothing moves: what --json of an earlier drive printed");
+  auto* repeat =
+      verb.add_option("--repeat", options->repeat, "times at most; fewer when more would not make it better")
+          ->check(CLI::Range(1, routines::settings::kMostRepeats))
+          ->capture_default_str();
   verb.add_option("--out", options->out, "calibration file of the lengths proposed, for apply");
+  return verb.add_option("--of", options->of, "nothing moves: what --json of an earlier drive printed")
+      ->excludes(repeat);
 }
 
 }  // namespace
@@ -258,27 +271,32 @@ void add_manual(CLI::App& app, Session& session) {
   const auto options = std::make_shared<ManualOptions>();
   auto* line =
       app.add_subcommand("straight", "Drive straight and back, and propose corrected wheel diameters");
-  line->add_option("--distance", options->distance,
-                   "m, negative: backwards; with --square the length of a side")
-      ->check(finite())
-      ->capture_default_str();
+  const auto* distance = line->add_option("--distance", options->distance,
+                                          "m, negative: backwards; with --square the length of a side")
+                             ->check(finite())
+                             ->capture_default_str();
   line->add_option("--measured", options->measured,
                    "m, by a tape instead of the lidar: ask, one value, or one for each way out")
       ->delimiter(',');
-  line->add_flag("--one-way", options->one_way, "do not come back: to be measured where it stands");
+  auto* one_way =
+      line->add_flag("--one-way", options->one_way, "do not come back: to be measured where it stands");
   line->add_flag("--square", options->square,
                  "around a square in both directions: unequal diameters and track width (UMBmark)");
-  add_common(*line, options);
-  line->callback(
-      [&session, options] { session.run = [&session, options] { return straight(session, *options); }; });
+  add_common(*line, options)->excludes(one_way);
+  line->callback([&session, options, distance] {
+    options->distance_is_stated = distance->count() > 0;
+    session.run = [&session, options] { return straight(session, *options); };
+  });
   auto* turn = app.add_subcommand("spin", "Turn on the spot, and propose a corrected track width");
-  turn->add_option("--turns", options->turns, "full turns")->check(finite())->capture_default_str();
-  turn->add_option("--direction", options->direction)->check(CLI::IsMember({"ccw", "cw", "both"}));
+  auto* turns =
+      turn->add_option("--turns", options->turns, "full turns")->check(finite())->capture_default_str();
+  auto* direction =
+      turn->add_option("--direction", options->direction)->check(CLI::IsMember({"ccw", "cw", "both"}));
   turn->add_option(
           "--measured-turn", options->measured,
           "degrees, by a mark on the floor instead of the lidar: ask, one value, or one for each turn")
       ->delimiter(',');
-  add_common(*turn, options);
+  add_common(*turn, options)->excludes(turns)->excludes(direction);
   turn->callback(
       [&session, options] { session.run = [&session, options] { return spin(session, *options); }; });
 }

@@ -150,6 +150,7 @@ TEST_P(Squares, S1_07_driven_both_ways_give_E_d_and_E_b_within_three_deviations)
   write(straight.value());
   cli::DrivenMoves driven;
   drive(driven, "Straight", {{"distance", 1.0}, {"square", true}, {"repeat", 3}});
+  EXPECT_NEAR(cli::side_of(driven), 1.0, 0.02);
   const auto square = cli::square_proposal(driven, 1.0);
   ASSERT_TRUE(square) << square.error().text();
   expect_found(square.value(), {truth().left_diameter, truth().right_diameter, truth().track_width});
