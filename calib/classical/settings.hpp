@@ -1,5 +1,5 @@
 // Numbers that decide which factor a length has in it, and which moves show a length, each once, with its
-// unit and its origin: derived (from what), published (source), measured (where), chosen (for what reason).
+// unit and its origin (see calib/matching/settings.hpp).
 #pragma once
 
 #include "calib/math/se2.hpp"
@@ -12,35 +12,37 @@ inline constexpr double kSameLength = 1.2;
 /// Relative deviation of a ratio from a factor of the table, and of ratios that are alike. Derived: nominal
 /// values are right to 10 %, and neighbouring factors of the table are 27 % apart at least.
 inline constexpr double kSameFactor = 0.12;
-/// Ratio, or its inverse, of both diameters from which a gear is named where the table knows nothing. Chosen.
+/// Ratio, or its inverse, of both diameters from which a gear is named where the table knows nothing. Chosen,
+/// untried.
 inline constexpr double kGearFactor = 2.0;
-/// Ratio, or its inverse, by which the encoders of two wheels count unlike each other. Chosen.
+/// Ratio, or its inverse, by which the encoders of two wheels count unlike each other. Chosen, untried.
 inline constexpr double kUnlikeCounts = 2.0;
 
 // --- Straight and spin -----------------------------------------------------------------------------------
 
-/// rad, by which a stretch may turn that still counts as straight. Chosen.
+/// rad, by which a stretch may turn that still counts as straight. Chosen, sensitive.
 inline constexpr double kStraightYaw_rad = 0.02;
-/// m in all, of straight motion that shows a diameter. Chosen.
+/// m in all, of straight motion that shows a diameter. Chosen, insensitive.
 inline constexpr double kLeastTravel_m = 0.3;
-/// m and rad, of a pair of scans that shows a ratio. Chosen.
+/// m and rad, of a pair of scans that shows a ratio. Chosen, sensitive.
 inline constexpr double kLeastPairTravel_m = 0.02, kLeastPairTurn_rad = 0.03;
-/// Travel over rotation, in units of the track width, of a turn that still is on the spot. Chosen.
+/// Travel over rotation, in units of the track width, of a turn that still is on the spot. Chosen, sensitive.
 inline constexpr double kSpinLever = 0.1;
-/// Robust deviations of a pair that is left out. Chosen.
+/// Robust deviations of a pair that is left out. Chosen, sensitive.
 inline constexpr double kGrossPair = 5.0;
 
 // --- Rest to rest ----------------------------------------------------------------------------------------
 
 /// m, of a straight move. Chosen: below it errors at rest weigh too much.
 inline constexpr double kLeastDistance_m = 0.2;
-/// rad, by which a straight move may turn. Chosen.
+/// rad, by which a straight move may turn. Chosen, untried.
 inline constexpr double kMostYaw_rad = 0.5;
 /// rad, of a turn on the spot. Chosen: a quarter of a turn.
 inline constexpr double kLeastTurn_rad = math::kPi / 2.0;
-/// Share of a side; a drive that ends farther from its start is no square. Chosen.
+/// Share of a side; a drive that ends farther from its start is no square. Chosen, untried.
 inline constexpr double kFarEnd = 0.5;
-/// Error of the common scale of diameters that a straight metre gave, by either reference: relative. Chosen.
+/// Error of the common scale of diameters that a straight metre gave, by either reference: relative. Chosen,
+/// untried.
 inline constexpr double kDiametersOfStraight = 3e-4;
 
 // --- Missing motion --------------------------------------------------------------------------------------
@@ -76,7 +78,7 @@ inline constexpr std::size_t kFewestForSigns = 20;
 /// Share of what is left of the rotation with the wires as they are, that other wires may leave. Chosen:
 /// exchanged sides leave all of it, and put right only noise.
 inline constexpr double kLeftByWires = 0.5;
-/// Deviations by which lengths stand clear of zero, on either side. Chosen.
+/// Deviations by which lengths stand clear of zero, on either side. Chosen, untried.
 inline constexpr double kClearOfZero = 5.0;
 /// Share of what the wheels rolled, of a reference that stood. Chosen: a turn of four times the counts is
 /// more, and has its own message.

@@ -15,7 +15,7 @@ namespace odomcalib::calib::estimation::settings {
 inline constexpr std::size_t kMostLookedAt = 3000;
 /// The same while each of several mistakes is tried on the scans. Chosen: a minute at 10 Hz.
 inline constexpr std::size_t kMostTried = 600;
-/// Motions of half a second that a judgement takes. Chosen.
+/// Motions of half a second that a judgement takes. Chosen, untried.
 inline constexpr std::size_t kFewestMotions = 20;
 /// Share of the reference's rotation that the counts explain: below the first they contradict it, above the
 /// second they agree. Measured: sound simulated recordings have 0.93 to 0.99, clocks apart by seconds 0 to
@@ -26,9 +26,9 @@ inline constexpr double kLeftOver = 0.4;
 /// s, step and reach of the search for clocks that were set apart. Chosen: people start recorders within a
 /// minute of each other.
 inline constexpr double kClockStep_s = 0.1, kClockReach_s = 60.0;
-/// Relative difference of the lengths of two streams that may be one of their clocks' rates. Chosen.
+/// Relative difference of the lengths of two streams that may be one of their clocks' rates. Chosen, untried.
 inline constexpr double kSpansApart = 0.05;
-/// Counts that a wheel may fall by and still count up only: an edge seen twice.
+/// Counts that a wheel may fall by and still count up only. Derived: an edge seen twice.
 inline constexpr int kEdge = 2;
 /// Such motions at least. Chosen: one match in a hundred fails.
 inline constexpr std::size_t kFewestAgainstCounting = 5;
@@ -38,74 +38,75 @@ inline constexpr double kAgainstCounting = 0.05;
 /// rad in half a second, by which a motion contradicts the counts, and the share of that which may be left
 /// with a direction. Chosen: no match is off by the first.
 inline constexpr double kContradicting_rad = 0.1, kLeftWithDirection = 0.3;
-/// m, nearly straight on in all, that show the unit of odometry. Chosen.
+/// m, nearly straight on in all, that show the unit of odometry. Chosen, untried.
 inline constexpr double kStraightOn_m = 0.5;
-/// rad, turned in all, after which left and right counts cannot be the same. Chosen.
+/// rad, turned in all, after which left and right counts cannot be the same. Chosen, untried.
 inline constexpr double kTurned_rad = 1.0;
 /// Ratio of a length to its nominal value, less one. Chosen: nominal values are right to that.
 inline constexpr double kNearNominal = 0.1;
-/// Ratios of the angles that a scan was sent with to those that are stated, which are tried. Chosen.
+/// Ratios of the angles that a scan was sent with to those that are stated, which are tried. Chosen, untried.
 inline constexpr std::array kAngleFactors = {0.75, 4.0 / 3.0, 0.5, 2.0, 2.0 / 3.0, 1.5};
-/// Rounds of bounded residuals. Chosen.
+/// Rounds of bounded residuals. Chosen, insensitive.
 inline constexpr int kGainRounds = 4;
 
 // --- Joint -----------------------------------------------------------------------------------------------
 
-/// sigma of a standardised residual vector. Chosen.
+/// sigma of a standardised residual vector. Chosen, sensitive.
 inline constexpr double kOutlier = 5.0;
-/// Noise and weights are settled over this many outer rounds. Chosen.
+/// Noise and weights are settled over this many outer rounds. Chosen, sensitive.
 inline constexpr int kNoiseRounds = 3;
-/// Gauss-Newton steps of a fit, all outer rounds together. Chosen.
+/// Gauss-Newton steps of a fit, all outer rounds together. Chosen, insensitive.
 inline constexpr int kMostJointIterations = 60;
-/// Sigma. Gauss-Newton's next step after one of this length is shorter by orders of magnitude. Chosen.
+/// Sigma. Gauss-Newton's next step after one of this length is shorter by orders of magnitude. Chosen,
+/// sensitive.
 inline constexpr double kFitSettled = 1e-2;
 /// All recordings of one call come from one robot and one lidar; with few pairs each, they share a noise
-/// model. Chosen.
+/// model. Chosen, insensitive.
 inline constexpr std::size_t kPairsForOwnNoise = 100;
-/// Sigma that parameters may move before the model is linearised anew. Chosen.
+/// Sigma that parameters may move before the model is linearised anew. Chosen, sensitive.
 inline constexpr double kLinearReach = 1.0;
-/// Steps that are tried, each ten times as damped as the one before. Chosen.
+/// Steps that are tried, each ten times as damped as the one before. Chosen, insensitive.
 inline constexpr int kMostDampings = 8;
-/// Component of a direction without information, from which a parameter is named. Chosen.
+/// Component of a direction without information, from which a parameter is named. Chosen, untried.
 inline constexpr double kNamedComponent = 0.3;
 
 // --- Path fit --------------------------------------------------------------------------------------------
 
-/// Rounds of noise and parameters. Chosen.
+/// Rounds of noise and parameters. Chosen, sensitive.
 inline constexpr int kPathRounds = 3;
-/// Gauss-Newton steps a round. Chosen.
+/// Gauss-Newton steps a round. Chosen, sensitive.
 inline constexpr int kPathSteps = 3;
-/// Over the noise parameters. Chosen.
+/// Over the noise parameters. Chosen, sensitive.
 inline constexpr int kPathSweeps = 2;
-/// Chi-square of three degrees of freedom: one in 7e5. Chosen.
+/// Chi-square of three degrees of freedom: one in 7e5. Chosen, sensitive.
 inline constexpr double kPathOutlierSquared = 30.0;
-/// m, even standing wheels are not ideal. Chosen.
+/// m, even standing wheels are not ideal. Chosen, sensitive.
 inline constexpr double kLeastRolled_m = 1e-4;
-/// Motions between placed scans that a fit takes. Chosen.
+/// Motions between placed scans that a fit takes. Chosen, insensitive.
 inline constexpr std::size_t kFewestLinks = 50;
 /// Bits to which the logarithm of a noise is searched. Chosen: about a hundredth of its range.
 inline constexpr int kPathNoiseBits = 7;
 /// Bounds of the search: factor on the places' deviations, the wheels' noise in m or rad per root of a metre,
-/// and s. Chosen.
+/// and s. Chosen, sensitive.
 inline constexpr double kLeastPlaceScale = 0.3, kMostPlaceScale = 4.0;
 inline constexpr double kLeastPathNoise = 1e-5, kMostPathNoise = 0.1;
 inline constexpr double kLeastPathJitter_s = 1e-5, kMostPathJitter_s = 0.05;
-/// m and rad per root of a metre, with which that search begins. Chosen.
+/// m and rad per root of a metre, with which that search begins. Chosen, sensitive.
 inline constexpr double kStartPathNoise_m = 2e-4, kStartPathNoise_rad = 1e-3;
 
 // --- Start values ----------------------------------------------------------------------------------------
 
-/// s, to either side, over which a delay is searched. Chosen.
+/// s, to either side, over which a delay is searched. Chosen, insensitive.
 inline constexpr double kDelayReach_s = 0.6;
-/// s, of that search. Chosen.
+/// s, of that search. Chosen, insensitive.
 inline constexpr double kDelayStep_s = 0.02;
 /// A delay must reduce the robust misfit by this factor to be believed; otherwise zero is the better start.
-/// Chosen.
+/// Chosen, sensitive.
 inline constexpr double kBelievableDelay = 0.9;
 /// Nearer to each other, delays of both halves are within reach of the fit from the delay of the whole, s.
-/// Chosen.
+/// Chosen, insensitive.
 inline constexpr double kClocksApart_s = 0.06;
-/// Rounds of one reweighting each. Chosen.
+/// Rounds of one reweighting each. Chosen, insensitive.
 inline constexpr int kMisfitRounds = 3;
 /// rad, from its nominal value, of a lidar that looks to the other side. Derived: a right angle, beyond which
 /// the fit's way to negative lengths is the shorter one.
@@ -124,7 +125,7 @@ inline constexpr double kSplitReach_s = 2.0, kSplitStep_s = 0.02;
 inline constexpr double kFineSplitStep_s = 0.002;
 /// Pairs on either side. Chosen: some ten seconds.
 inline constexpr std::size_t kFewestPairsOfClock = 12;
-/// rad, noise of a measured rotation, at least. Chosen.
+/// rad, noise of a measured rotation, at least. Chosen, insensitive.
 inline constexpr double kLeastTurnNoise_rad = 1e-3;
 /// Square of the sigmas beyond which a pair says nothing. Chosen: three.
 inline constexpr double kGrossTurnSquared = 9.0;
@@ -132,7 +133,7 @@ inline constexpr double kGrossTurnSquared = 9.0;
 /// 100 moments and 200 by 200 delays by chance one gains 2 ln(4e6) = 30; twice that, and half of it against a
 /// drift.
 inline constexpr double kPlainSplit = 60.0, kSplitNotDrift = 30.0;
-/// Rounds of splitting and of finding the gains. Chosen.
+/// Rounds of splitting and of finding the gains. Chosen, insensitive.
 inline constexpr int kSplitRounds = 3;
 /// s, about the first pair after the step, in which the step shows in the stamps. Chosen: two pairs.
 inline constexpr double kMomentReach_s = 2.0;
@@ -141,33 +142,36 @@ inline constexpr double kMomentReach_s = 2.0;
 
 /// Relative deviation of the scale of a MEMS gyro. Published: +-3 % (MPU-6050, product specification).
 inline constexpr double kGyroScale = 0.03;
-/// Standard deviations at which a gyro's scale is another, or its turns contradict the lidar's. Chosen.
+/// Standard deviations at which a gyro's scale is another, or its turns contradict the lidar's. Chosen,
+/// untried.
 inline constexpr double kGyroPlain = 4.0;
 /// rad/s, deviation of a gyro's bias before anything is known. Chosen; the same specification states +-20
 /// deg/s.
 inline constexpr double kGyroBias = 0.1;
-/// s, deviation of a gyro's clock about the best of the coarse search. Chosen.
+/// s, deviation of a gyro's clock about the best of the coarse search. Chosen, untried.
 inline constexpr double kGyroOffset_s = 0.1;
-/// s, to either side, over which that clock is searched. Chosen.
+/// s, to either side, over which that clock is searched. Chosen, untried.
 inline constexpr double kGyroReach_s = 0.5;
-/// s, of that search. Chosen.
+/// s, of that search. Chosen, untried.
 inline constexpr double kGyroStep_s = 0.02;
-/// s, between samples of a gyro over which nothing is integrated. Chosen.
+/// s, between samples of a gyro over which nothing is integrated. Chosen, untried.
 inline constexpr double kGyroHole_s = 0.1;
-/// s, of an interval between pairs, where the gyro alone sees the turn. Chosen.
+/// s, of an interval between pairs, where the gyro alone sees the turn. Chosen, untried.
 inline constexpr double kBetweenPairs_s = 0.5;
 /// rad, both ways together, that a verdict on a gyro needs. Chosen: half a turn.
 inline constexpr double kLeastGyroTurn_rad = math::kPi;
-/// Share of a gyro's variance that the wheels must explain. Chosen.
+/// Share of a gyro's variance that the wheels must explain. Chosen, untried.
 inline constexpr double kLeastGyroShare = 0.5;
-/// Intervals that a verdict on a gyro needs. Chosen.
+/// Intervals that a verdict on a gyro needs. Chosen, untried.
 inline constexpr std::size_t kFewestGyroTurns = 20;
-/// Ratio of a gyro's turns to the robot's, or its inverse, from which it is stated as a factor. Chosen.
+/// Ratio of a gyro's turns to the robot's, or its inverse, from which it is stated as a factor. Chosen,
+/// untried.
 inline constexpr double kGyroFactor = 2.0;
 
 // --- Settling --------------------------------------------------------------------------------------------
 
-/// Passes of fitting and matching after which an unchanged clock is enough, and passes at most. Chosen.
+/// Passes of fitting and matching after which an unchanged clock is enough, and passes at most. Chosen,
+/// sensitive.
 inline constexpr int kFitPasses = 2, kMostFitPasses = 5;
 
 }  // namespace odomcalib::calib::estimation::settings

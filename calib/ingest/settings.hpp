@@ -1,5 +1,5 @@
 // Numbers that decide whether the streams of a recording can be what they are called, each once, with its
-// unit and its origin: derived (from what), published (source), measured (where), chosen (for what reason).
+// unit and its origin (see calib/matching/settings.hpp).
 #pragma once
 
 #include <cstddef>
@@ -20,7 +20,7 @@ inline constexpr double kFastestScans_s = 3e-3;
 /// s, between neighbouring samples of one stream: their clock was set. Chosen: twelve days, which no
 /// recording pauses for.
 inline constexpr double kClockSet_s = 1e6;
-/// Times the usual step, of one that is unlike all others. Chosen.
+/// Times the usual step, of one that is unlike all others. Chosen, insensitive.
 inline constexpr double kUnlikeOthers = 1e3;
 /// Time that all beams of a scan take over the time from scan to scan: no head sends a scan before the one
 /// before it ends. Chosen: half a turn is left to uneven stamps.
@@ -34,9 +34,9 @@ inline constexpr double kSweepInOtherUnit = 20.0;
 inline constexpr double kSameSpan = 0.1;
 /// m, of a lidar from the middle of the axle. Chosen: larger robots are not driven by two wheels.
 inline constexpr double kFarthestLidar_m = 5.0;
-/// s, between neighbouring scans or poses, beyond which the reference was interrupted. Chosen.
+/// s, between neighbouring scans or poses, beyond which the reference was interrupted. Chosen, insensitive.
 inline constexpr double kMaxGap_s = 2.0;
-/// Interval over the mean one, of samples that come at once. Chosen.
+/// Interval over the mean one, of samples that come at once. Chosen, insensitive.
 inline constexpr double kSentAtOnce = 0.1;
 
 // --- Angles ----------------------------------------------------------------------------------------------
@@ -46,7 +46,7 @@ inline constexpr double kSentAtOnce = 0.1;
 inline constexpr double kMostTurns = 1.15;
 /// rad that a scan spans whose sensor sees all round. Chosen: 350 degrees.
 inline constexpr double kAllRoundScan_rad = 6.1;
-/// Turns, of angles that look like degrees. Chosen.
+/// Turns, of angles that look like degrees. Chosen, untried.
 inline constexpr double kTurnsInDegrees = 4.0;
 
 // --- Parts of turns, repeated scans, beams of a wandering head
@@ -55,11 +55,12 @@ inline constexpr double kTurnsInDegrees = 4.0;
 /// Relative difference of the steps from beam to beam of two scans, by rounding. Derived: of single
 /// precision.
 inline constexpr double kSameStep = 1e-4;
-/// Steps, by which the first beam of a part may miss the one after the last beam of the part before. Chosen.
+/// Steps, by which the first beam of a part may miss the one after the last beam of the part before. Chosen,
+/// untried.
 inline constexpr double kNextBeam = 0.6;
-/// Scans that a judgement on the whole stream takes. Chosen.
+/// Scans that a judgement on the whole stream takes. Chosen, insensitive.
 inline constexpr std::size_t kFewestParts = 20;
-/// Parts that make a turn, at least: of fewer, a scan is nearly a turn. Chosen.
+/// Parts that make a turn, at least: of fewer, a scan is nearly a turn. Chosen, insensitive.
 inline constexpr double kFewestPartsOfTurn = 1.7;
 /// Share of the scans that go on where the one before ended. Chosen: a part is lost now and then.
 inline constexpr double kFollowingParts = 0.8;
@@ -85,9 +86,9 @@ inline constexpr double kNearlyOneTurn = 0.02;
 /// m, median reading of a recording. Chosen: lidars that measure 80 m see nothing at most bearings; robots
 /// that fit on a desk see their walls at 0.2 m.
 inline constexpr double kFarthestMedian_m = 60.0, kNearestMedian_m = 0.02;
-/// m, where the median reading lies for most robots. Only the unit that is nearest is named. Chosen.
+/// m, where the median reading lies for most robots. Only the unit that is nearest is named. Chosen, untried.
 inline constexpr double kUsualMedian_m = 2.5;
-/// Scans that are looked at, evenly spread.
+/// Scans that are looked at, evenly spread. Chosen, insensitive.
 inline constexpr std::size_t kScansLookedAt = 200;
 
 /// Standard deviation of the scale of a lidar, relative. Derived (JCGM 100:2008, 4.3.7) from limits of 1 % of
@@ -103,13 +104,13 @@ inline constexpr double kPhantomShare = 0.004;
 /// How many times as often as its ten neighbours, one by one, the number comes. Chosen: walls seen squarely
 /// from a moving robot make 2 to 3.
 inline constexpr double kPhantomPeak = 15.0;
-/// Parts of a recording, and in how many the number must stand out: a wall at one distance does so while the
-/// robot stays there.
+/// Parts of a recording, and in how many the number must stand out. Chosen: a wall at one distance does so
+/// while the robot stays there.
 inline constexpr std::size_t kPhantomParts = 8, kPhantomPartsNeeded = 6;
 
 /// Share of range_max from which a reading is no surface anyway (matching::far_limit). Derived from there.
 inline constexpr double kNearRangeMax = 1.0 - matching::settings::kNoiseAfar;
-/// Neighbours on either side. Chosen.
+/// Neighbours on either side. Chosen, untried.
 inline constexpr std::size_t kPhantomBeside = 5;
 
 // --- Poses -----------------------------------------------------------------------------------------------
@@ -117,7 +118,7 @@ inline constexpr std::size_t kPhantomBeside = 5;
 /// Share of the largest distance from the first pose, from one pose that is looked at to the next. Chosen:
 /// noise of a reference is small against it whatever unit lengths are in.
 inline constexpr double kPoseStep = 0.01;
-/// Steps that a judgement takes. Chosen.
+/// Steps that a judgement takes. Chosen, untried.
 inline constexpr std::size_t kFewestPoseSteps = 30;
 /// Share of the way that goes sideways: of poses that may contradict their heading, and of those that follow
 /// it. Derived: 0.64 where heading and way have nothing to do with each other; wheels slip by a few per cent,
@@ -138,7 +139,7 @@ inline constexpr double kOdometryStep_m = 0.02, kOdometryStep_rad = 0.1;
 /// Sideways over ahead, of a frame that is turned: half a degree, which makes lengths 0.004 % longer, less
 /// than their deviations. Measured: below 0.004 in 16 recordings of other people's robots.
 inline constexpr double kTurnedFrame = 0.0087;
-/// Standard deviations of that. Chosen.
+/// Standard deviations of that. Chosen, untried.
 inline constexpr double kPlainlyTurned = 5.0;
 /// Share of the way that goes sideways and that no frame explains, of a yaw from elsewhere. Measured: below
 /// 0.005 in the same recordings; 0.1 with the yaw of a filter.
@@ -146,38 +147,39 @@ inline constexpr double kAsideUnexplained = 0.03;
 
 // --- Even stamps -----------------------------------------------------------------------------------------
 
-/// Stamps from which a period is looked for. Chosen.
+/// Stamps from which a period is looked for. Chosen, insensitive.
 inline constexpr std::size_t kFewestStamps = 50;
 /// s, jitter up to which stamps are left as they are. Chosen: nothing moves so fast that it mattered.
 inline constexpr double kEvenEnough_s = 3e-4;
-/// Samples to either side whose middle is taken. Chosen.
+/// Samples to either side whose middle is taken. Chosen, insensitive.
 inline constexpr std::size_t kMiddleReach = 30;
 /// Deviations from their median of what belongs to it. Chosen: whatever follows a step is not part of it.
 inline constexpr double kMiddleSigmas = 3.0;
-/// Samples over which a period is measured. Chosen.
+/// Samples over which a period is measured. Chosen, insensitive.
 inline constexpr std::size_t kPeriodSamples = 100;
-/// Mean interval over the usual one, up to which lost samples are counted. Chosen.
+/// Mean interval over the usual one, up to which lost samples are counted. Chosen, insensitive.
 inline constexpr double kFewLost = 3.0;
-/// Spread of the intervals, as a share of the usual one, up to which their number is certain. Chosen.
+/// Spread of the intervals, as a share of the usual one, up to which their number is certain. Chosen,
+/// insensitive.
 inline constexpr double kCertainCount = 0.2;
 /// Times the usual interval: from the first on a sample was held up, and up to the second others follow at
-/// once. Chosen.
+/// once. Chosen, insensitive.
 inline constexpr double kHeldUp = 1.5, kFollowsAtOnce = 0.5;
-/// s, of jitter that is reported. Chosen.
+/// s, of jitter that is reported. Chosen, insensitive.
 inline constexpr double kReportedJitter_s = 5e-3;
 
 // --- Contest of stamps -----------------------------------------------------------------------------------
 
-/// Rounds in which the errors that count and the share settle each other. Chosen.
+/// Rounds in which the errors that count and the share settle each other. Chosen, untried.
 inline constexpr int kContestRounds = 5;
-/// Times the spread, of an error that counts in full. Chosen.
+/// Times the spread, of an error that counts in full. Chosen, untried.
 inline constexpr double kContestLimit = 2.0;
-/// Share of the errors that speaks for even stamps, and deviations that it must be beyond. Chosen.
+/// Share of the errors that speaks for even stamps, and deviations that it must be beyond. Chosen, untried.
 inline constexpr double kEvenShare = 0.5, kEvenSigmas = 3.0;
 
 // --- Counts ----------------------------------------------------------------------------------------------
 
-/// Counts that differ by no more are those of a wheel that stands. Chosen.
+/// Counts that differ by no more are those of a wheel that stands. Chosen, insensitive.
 inline constexpr std::int64_t kStandingCounts = 2;
 
 }  // namespace odomcalib::calib::ingest::settings

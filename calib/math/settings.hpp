@@ -6,16 +6,16 @@ namespace odomcalib::calib::math::settings {
 
 // --- Scatter of blocks -----------------------------------------------------------------------------------
 
-/// s, of measurements whose errors may depend on each other. Chosen.
+/// s, of measurements whose errors may depend on each other. Chosen, sensitive.
 inline constexpr double kBlock_s = 5.0;
-/// Blocks whose scatter still means something. Chosen.
+/// Blocks whose scatter still means something. Chosen, insensitive.
 inline constexpr double kFewestScattered = 12.0;
-/// Probability that longer blocks are believed where errors do not drift. Chosen.
+/// Probability that longer blocks are believed where errors do not drift. Chosen, insensitive.
 inline constexpr double kLongerByChance = 1e-3;
 
 // --- Bootstrap --------------------------------------------------------------------------------------------
 
-/// Draws with replacement. Chosen.
+/// Draws with replacement. Chosen, sensitive.
 inline constexpr int kBootstrapDraws = 1000;
 
 }  // namespace odomcalib::calib::math::settings

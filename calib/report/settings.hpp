@@ -1,5 +1,5 @@
-// Numbers that decide about the verdict, each once, with its unit and its origin: derived (from what),
-// published (source), measured (where), chosen (for what reason).
+// Numbers that decide about the verdict, each once, with its unit and its origin (see
+// calib/matching/settings.hpp).
 #pragma once
 
 #include <cstddef>
@@ -8,12 +8,13 @@ namespace odomcalib::calib::report::settings {
 
 // --- Lengths -----------------------------------------------------------------------------------------------
 
-/// Relative deviation of a length that is no calibration any more, and of one to warn of. Chosen.
+/// Relative deviation of a length that is no calibration any more, and of one to warn of. Chosen,
+/// insensitive.
 inline constexpr double kMaxRelativeDeviation = 0.03;
 inline constexpr double kWarnRelativeDeviation = 0.005;
-/// Estimate over nominal value, of what cannot be the length that it is called. Chosen.
+/// Estimate over nominal value, of what cannot be the length that it is called. Chosen, sensitive.
 inline constexpr double kPlausibleLow = 0.5, kPlausibleHigh = 2.0;
-/// Relative difference from the nominal value to warn of. Chosen.
+/// Relative difference from the nominal value to warn of. Chosen, insensitive.
 inline constexpr double kWarnChange = 0.10;
 /// Relative, of a scan matcher's metre; it depends on the room. Measured: 0.02 % over simulated rooms
 /// (tests/integration/accuracy_test.cpp).
@@ -30,7 +31,7 @@ inline constexpr double kGoodEnough = 5e-4;
 // --- Pairs of scans or poses
 // --------------------------------------------------------------------------------
 
-/// Share of the pairs that matched: of fewer the rest may say something else. Chosen.
+/// Share of the pairs that matched: of fewer the rest may say something else. Chosen, insensitive.
 inline constexpr double kFewestMatched = 0.1, kWarnMatched = 0.5;
 /// The same where most pairs that matched leave a direction open. Chosen: each says less.
 inline constexpr double kFewestMatchedInPart = 0.5;
@@ -42,7 +43,7 @@ inline constexpr double kFewReadings = 0.5;
 /// Share of the pairs that contradict all others by more than five deviations, of a recording that a second
 /// look is worth. Measured: below 0.1 % in sound simulated recordings, 1 to 5 % in real ones.
 inline constexpr double kManyContradict = 0.1;
-/// The same, of a fit that describes one part of the recording and not the other. Chosen.
+/// The same, of a fit that describes one part of the recording and not the other. Chosen, untried.
 inline constexpr double kTooManyContradict = 0.25;
 
 // --- What was left out -------------------------------------------------------------------------------------
@@ -58,9 +59,9 @@ inline constexpr double kWarnLeftOut = 0.01, kMostLeftOut = 0.5;
 // --- Figures of what odometry is off by
 // ---------------------------------------------------------------------
 
-/// Times the noise: most of the error has another cause. Chosen.
+/// Times the noise: most of the error has another cause. Chosen, sensitive.
 inline constexpr double kWarnResidual = 2.0;
-/// Times the nominal values' error, of an error that has not become smaller. Chosen.
+/// Times the nominal values' error, of an error that has not become smaller. Chosen, insensitive.
 inline constexpr double kNoBetter = 1.0;
 /// Times the noise, of an error with the nominal values that there was something to gain from. Chosen: 1.2 is
 /// what a metre of the MinesRover recordings shows.
@@ -78,10 +79,10 @@ inline constexpr double kEstimatorsApart = 6.0, kEstimatorsApartShare = 0.005;
 /// Runs test, standard normal, of residuals that come in long rows of one sign. Measured: -2.8 to 4 in sound
 /// recordings.
 inline constexpr double kTooFewRuns = -5.0;
-/// Residuals that the runs test needs. Chosen.
+/// Residuals that the runs test needs. Chosen, insensitive.
 inline constexpr double kFewestForRuns = 10.0;
 
-/// Share of the residual's systematic part that has no name: most of it. Chosen.
+/// Share of the residual's systematic part that has no name: most of it. Chosen, untried.
 inline constexpr double kMostUnexplained = 0.5;
 
 // --- Signs that add up -------------------------------------------------------------------------------------
@@ -94,7 +95,7 @@ inline constexpr double kMostUnexplained = 0.5;
 /// one wheel that loses a fifth of its counts now and then (5.3 to 9.9), or slips by a fifth for half of the
 /// drive (3.6 to 7.5), which may be accepted with warnings.
 inline constexpr double kMostSigns = 5.8;
-/// Largest weight of a single sign: one alone never refuses. Chosen.
+/// Largest weight of a single sign: one alone never refuses. Chosen, untried.
 inline constexpr double kHeaviestSign = 4.0;
 
 // --- Several recordings
@@ -103,7 +104,7 @@ inline constexpr double kHeaviestSign = 4.0;
 /// Level of the test of homogeneity. Chosen: one in a thousand sets of recordings of one robot is taken for
 /// several.
 inline constexpr double kApartLevel = 1e-3;
-/// Deviations of a single difference that is no chance. Chosen.
+/// Deviations of a single difference that is no chance. Chosen, untried.
 inline constexpr double kPlainlyApart = 4.0;
 /// Share of a length, m and rad of the lidar's place: differences beyond are refused, smaller ones widen the
 /// deviations. Chosen: the first is what the verdict warns of where a length is not known better.
@@ -111,18 +112,18 @@ inline constexpr double kLengthApart = kWarnRelativeDeviation, kMountApart_m = 0
 
 // --- Pictures --------------------------------------------------------------------------------------------
 
-/// Poses of a path, and pairs. Chosen.
+/// Poses of a path, and pairs. Chosen, sensitive.
 inline constexpr std::size_t kMostPathPoints = 600, kMostSamples = 300;
 /// Scans that are laid on each other, and beams of each. Chosen: what an eye can tell apart.
 inline constexpr std::size_t kOverlaidScans = 8, kOverlaidBeams = 150;
-/// Bins of a histogram of residuals, and deviations at which it ends. Chosen.
+/// Bins of a histogram of residuals, and deviations at which it ends. Chosen, sensitive.
 inline constexpr std::size_t kHistogramBins = 20;
 inline constexpr double kHistogramEnd = 5.0;
 
 // --- Homogeneity -----------------------------------------------------------------------------------------
 
 /// Relative deviation of each length that one recording must determine alone to be compared with others.
-/// Chosen.
+/// Chosen, untried.
 inline constexpr double kKnownAlone = 0.02;
 
 // --- Outlier cause ---------------------------------------------------------------------------------------
@@ -130,44 +131,46 @@ inline constexpr double kKnownAlone = 0.02;
 /// Squared ratio of distances, to the places and to the wheels' motion, from which the wheels are at fault.
 /// Derived: half as far.
 inline constexpr double kNearPlaces = 0.25;
-/// m and rad, of a pair at rest. Chosen.
+/// m and rad, of a pair at rest. Chosen, untried.
 inline constexpr double kAtRest = 0.01;
-/// Outliers whose mean is reported as a cause, and deviations of that mean from zero. Chosen.
+/// Outliers whose mean is reported as a cause, and deviations of that mean from zero. Chosen, untried.
 inline constexpr double kFewestOfCause = 5.0, kClearCause = 4.0;
 
 // --- Outlier trace ---------------------------------------------------------------------------------------
 
-/// Outlying events that are traced; fewer have everything in common. Chosen.
+/// Outlying events that are traced; fewer have everything in common. Chosen, insensitive.
 inline constexpr std::size_t kFewestEvents = 5;
-/// Share of all pairs that outliers must be to be traced. Chosen.
+/// Share of all pairs that outliers must be to be traced. Chosen, untried.
 inline constexpr double kFewestOutliers = 0.015;
 /// Family-wise level of a covariate of the outliers. Derived: no draw of kOutlierDraws is above.
 inline constexpr double kOutlierLevel = 0.001;
-/// Share of the best gain from which a covariate may as well be the one. Chosen.
+/// Share of the best gain from which a covariate may as well be the one. Chosen, untried.
 inline constexpr double kAsGood = 0.8;
-/// Slices of each coordinate of a place; their square is the number of bins of any other covariate. Chosen.
+/// Slices of each coordinate of a place; their square is the number of bins of any other covariate. Chosen,
+/// untried.
 inline constexpr std::size_t kPlaceSlices = 4;
-/// Times the usual share of events, above which a bin belongs to the range that is reported. Chosen.
+/// Times the usual share of events, above which a bin belongs to the range that is reported. Chosen, untried.
 inline constexpr double kUnusualShare = 2.0;
-/// Covariates named of outliers. Chosen.
+/// Covariates named of outliers. Chosen, untried.
 inline constexpr std::size_t kMostNamed = 3;
-/// Random permutations; the finest p-value is 1 / (1 + draws). Chosen.
+/// Random permutations; the finest p-value is 1 / (1 + draws). Chosen, untried.
 inline constexpr int kOutlierDraws = 999;
 
 // --- Residual trace --------------------------------------------------------------------------------------
 
-/// Gain of the correlation ratio that a division must bring. Chosen.
+/// Gain of the correlation ratio that a division must bring. Chosen, untried.
 inline constexpr double kWorthDividing = 0.1;
-/// Gain of the correlation ratio that a less simple covariate must bring. Chosen.
+/// Gain of the correlation ratio that a less simple covariate must bring. Chosen, untried.
 inline constexpr double kWorthChanging = 0.02;
-/// rad; a reversal farther back is forgotten. Chosen.
+/// rad; a reversal farther back is forgotten. Chosen, untried.
 inline constexpr double kFarBack = 20.0;
 /// Index in vehicle::kPlays of the play by which a wheel's reversal is drawn: so much of it goes by until it
-/// is taken up. Chosen.
+/// is taken up. Chosen, untried.
 inline constexpr std::size_t kUsualPlay = 9;
-/// Bins over a covariate, and points of the picture. Chosen.
+/// Bins over a covariate, and points of the picture. Chosen, untried.
 inline constexpr std::size_t kTraceBins = 16, kMostTracePoints = 300;
-/// m and rad, of a motion that a residual is divided by; smaller ones are left out of the picture. Chosen.
+/// m and rad, of a motion that a residual is divided by; smaller ones are left out of the picture. Chosen,
+/// untried.
 inline constexpr double kLeastDividingWay_m = 0.03, kLeastDividingTurn_rad = 0.05;
 
 }  // namespace odomcalib::calib::report::settings

@@ -1,5 +1,5 @@
-// Numbers by which a fit is refined before and after the search, each once, with its unit and its origin (as
-// in calib/validation/settings.hpp).
+// Numbers by which a fit is refined before and after the search, each once, with its unit and its origin (see
+// calib/matching/settings.hpp).
 #pragma once
 
 #include <cstddef>
@@ -13,7 +13,7 @@ inline constexpr double kNegligibleOffset_s = 3e-3;
 
 // --- Lidar -----------------------------------------------------------------------------------------------
 
-/// Pairs of scans with other headings, of all recordings together. Chosen.
+/// Pairs of scans with other headings, of all recordings together. Chosen, insensitive.
 inline constexpr std::size_t kMostHeadingPairs = 120;
 
 }  // namespace odomcalib::calib::stages::settings

@@ -1,6 +1,5 @@
-// Numbers by which models are compared on data that was not fitted, each once, with its unit and its origin:
-// derived (from what), published (source), measured (where), chosen (for the reason that is given; where none
-// is given, no comparison with other values is known).
+// Numbers by which models are compared on data that was not fitted, each once, with its unit and its origin
+// (see calib/matching/settings.hpp).
 #pragma once
 
 #include <array>
@@ -10,20 +9,21 @@ namespace odomcalib::calib::validation::settings {
 
 // --- Parts of a recording that are left out or drawn together --------------------------------------------
 
-/// s, of pairs whose held-out gain is resampled together. Chosen.
+/// s, of pairs whose held-out gain is resampled together. Chosen, untried.
 inline constexpr double kGainBlock_s = 10.0;
-/// s, of pairs that belong to one fold. Chosen.
+/// s, of pairs that belong to one fold. Chosen, sensitive.
 inline constexpr double kFoldBlock_s = 20.0;
-/// s, of evaluation windows that are resampled together. Chosen.
+/// s, of evaluation windows that are resampled together. Chosen, sensitive.
 inline constexpr double kWindowBlock_s = 30.0;
-/// Parts of a recording that are left out in turn. Chosen.
+/// Parts of a recording that are left out in turn. Chosen, untried.
 inline constexpr std::size_t kFolds = 5;
 
 // --- Robustness ------------------------------------------------------------------------------------------
 
-/// Standard deviations at which a whitened residual is cut, so that one bad match does not decide. Chosen.
+/// Standard deviations at which a whitened residual is cut, so that one bad match does not decide. Chosen,
+/// sensitive.
 inline constexpr double kClip = 3.5;
-/// Robust weight from which a pair counts in evaluation windows and in pictures. Chosen.
+/// Robust weight from which a pair counts in evaluation windows and in pictures. Chosen, sensitive.
 inline constexpr double kTrustedWeight = 0.3;
 
 // --- Gain on held-out data -------------------------------------------------------------------------------
@@ -55,7 +55,7 @@ inline constexpr double kKnownMounting_m = 5e-3, kKnownMounting_rad = 2e-2;
 
 // --- Drive error -----------------------------------------------------------------------------------------
 
-/// Windows of a kind from which its error is reported. Chosen.
+/// Windows of a kind from which its error is reported. Chosen, sensitive.
 inline constexpr std::size_t kFewestOfAKind = 4;
 /// Blocks from which an error's interval is drawn. Derived: of three only ten different draws exist, of one
 /// only itself.
@@ -65,24 +65,24 @@ inline constexpr std::array kWays_m = {0.25, 0.5, 0.75, 1.0, 1.5, 2.0, 2.5, 3.0,
 
 // --- Evaluation window -----------------------------------------------------------------------------------
 
-/// s, of open-loop driving. Chosen.
+/// s, of open-loop driving. Chosen, sensitive.
 inline constexpr double kHorizon_s = 10.0;
-/// rad/m, of a motion that counts as straight; more is a curve. Chosen.
+/// rad/m, of a motion that counts as straight; more is a curve. Chosen, insensitive.
 inline constexpr double kStraightest = 0.15;
-/// m/rad, of a motion that counts as a turn on the spot; more is an arc. Chosen.
+/// m/rad, of a motion that counts as a turn on the spot; more is an arc. Chosen, sensitive.
 inline constexpr double kOnTheSpot = 0.08;
-/// m and rad; a pair at rest belongs to any kind. Chosen.
+/// m and rad; a pair at rest belongs to any kind. Chosen, sensitive.
 inline constexpr double kStanding = 0.004;
-/// m; on less, noise of the reference dominates. Chosen.
+/// m; on less, noise of the reference dominates. Chosen, sensitive.
 inline constexpr double kShortestStraight_m = 0.25;
-/// rad, of a turn that is judged. Chosen.
+/// rad, of a turn that is judged. Chosen, sensitive.
 inline constexpr double kSmallestTurn_rad = 0.6;
 
 // --- Held out --------------------------------------------------------------------------------------------
 
-/// Pairs from which a held-out residual is stated. Chosen.
+/// Pairs from which a held-out residual is stated. Chosen, insensitive.
 inline constexpr std::size_t kFewestHeldOut = 50;
-/// sigma; a failed match says nothing about the wheels. Chosen.
+/// sigma; a failed match says nothing about the wheels. Chosen, sensitive.
 inline constexpr double kGrossError = 6.0;
 
 // --- Quantiles -------------------------------------------------------------------------------------------
@@ -92,7 +92,7 @@ inline constexpr double kNormal95 = 1.960;
 
 // --- Window errors ---------------------------------------------------------------------------------------
 
-/// m, of travel over which an error of the heading counts as one of the position. Chosen.
+/// m, of travel over which an error of the heading counts as one of the position. Chosen, sensitive.
 inline constexpr double kHeadingLever_m = 0.5;
 
 }  // namespace odomcalib::calib::validation::settings

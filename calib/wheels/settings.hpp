@@ -6,14 +6,14 @@ namespace odomcalib::calib::wheels::settings {
 
 // --- Fine track ------------------------------------------------------------------------------------------
 
-/// s, longest interval of samples between which angles are interpolated by cubics. Chosen.
+/// s, longest interval of samples between which angles are interpolated by cubics. Chosen, sensitive.
 inline constexpr double kFineInterval_s = 0.03;
-/// s, of a gap across which nothing is interpolated. Chosen.
+/// s, of a gap across which nothing is interpolated. Chosen, insensitive.
 inline constexpr double kGap_s = 0.5;
 
 // --- Wheel track -----------------------------------------------------------------------------------------
 
-/// Neighbours' durations. Chosen.
+/// Neighbours' durations. Chosen, sensitive.
 inline constexpr double kSimilarIntervals = 2.0;
 
 }  // namespace odomcalib::calib::wheels::settings

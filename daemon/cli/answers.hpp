@@ -1,4 +1,4 @@
-// What the daemon answers, as far as it is of the version that is known here.
+// Answers of the daemon, as far as they are of the version that is known here.
 #pragma once
 
 #include <nlohmann/json.hpp>

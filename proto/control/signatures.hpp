@@ -1,4 +1,4 @@
-// What the methods of the interface take, read from its description.
+// Parameters of the methods of the interface, read from its description.
 #pragma once
 
 #include <string>

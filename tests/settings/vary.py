@@ -3,10 +3,12 @@
 
 Usage: tests/settings/vary.py prepare --into TREE                       numbers of TREE, a copy of this tree, obey the environment
        tests/settings/vary.py run BIN --rows FILE [--recordings NAME...]  solves recordings with each number halved and doubled
-       tests/settings/vary.py table --rows FILE...                      all numbers as a page, with what each changes
+       tests/settings/vary.py state                                     writes what the rows say into the settings files
+       tests/settings/vary.py table                                     all numbers as a page: docs/developer/numbers.md
+       tests/settings/vary.py --check                                   every number has an origin, and says what the rows say
        tests/settings/vary.py --self-test
 
-A number is a constant of a file calib/*/settings.hpp. In TREE each place that uses one may go on with its half or its double
+A number is a constant of a file calib/*/settings.hpp; those are varied whose comment gives no reason. In TREE each place that uses one may go on with its half or its double
 (varied.hpp), so that one build serves all of them; what the compiler has to know (sizes of arrays, constants made of constants)
 stays. BIN holds odomcalibctl and odomcalib-sim-record of TREE. Recordings are simulated, as tests/regression/compare makes them. A number that the
 program does not read while it solves a recording is not varied there. FILE gets a line of JSON a number, factor and recording, and
@@ -29,20 +31,34 @@ import re
 import shutil
 import subprocess
 import sys
+import tempfile
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 FACTORS = (0.5, 2.0)
-# Arguments of odomcalib-sim-record: drives with and without an effect, named, flagged and of the lidar.
-RECORDINGS = {
+ROWS = ROOT / "tests/settings/rows.jsonl"
+PAGE = """# The numbers of calib
+
+Made by `tests/settings/vary.py table` from the settings files of `calib`, one of each layer, and from `tests/settings/rows.jsonl`. Of {count} numbers
+{reasoned} have a reason: derived, published, measured, or chosen for what is said. The others were halved and doubled one at a time, and
+simulated recordings were calibrated again ({recordings}; `tests/settings/vary.py` has their seeds): {insensitive} changed no byte of any
+calibration (*insensitive*), {sensitive} changed some (*sensitive*), {untried} are read in none of these recordings, or are known to the compiler
+alone (*untried*).
+
+The columns on the right say in how many of the recordings that were solved with the number halved or doubled the calibration changed:
+one that does not read it is not solved, and a recording of the list may not have been solved with all of them yet. A byte that changes is no harm:
+the last digit of a length is enough."""
+# Arguments of odomcalib-sim-record: drives with and without an effect, named, flagged and of the lidar. Few beams, since every one is
+# solved some hundred times.
+RECORDINGS = {name: [*arguments, "--beams", "120"] for name, arguments in {
     "furnished": ["--room", "furnished", "--drive", "guided", "--seed", "5100"],
-    "corridor": ["--room", "corridor", "--drive", "guided", "--seed", "5101"],
-    "random": ["--room", "random", "--drive", "random", "--seed", "5102"],
-    "rest": ["--room", "furnished", "--drive", "rest", "--seed", "5103"],
-    "backlash": ["--effect", "gear_play", "--seed", "5104"],
-    "loose_wheel": ["--effect", "loose_wheel", "--seed", "5105"],
-    "cover_glass": ["--effect", "cover_glass", "--seed", "5106"],
+    "gear_play": ["--effect", "gear_play", "--seed", "5104"],
     "count_queue": ["--effect", "count_queue", "--seed", "5107"],
-}
+    "cover_glass": ["--effect", "cover_glass", "--seed", "5106"],
+    "random": ["--room", "random", "--drive", "random", "--seed", "5102"],
+    "loose_wheel": ["--effect", "loose_wheel", "--seed", "5105"],
+    "corridor": ["--room", "corridor", "--drive", "guided", "--seed", "5101"],
+    "rest": ["--room", "furnished", "--drive", "rest", "--seed", "5103"],
+}.items()}
 CONSTANT = re.compile(r"^inline constexpr ([\w:]+) ([^;]*);", re.M)
 NAME = re.compile(r"\b(k[A-Z]\w*) =")
 
@@ -101,8 +117,10 @@ def prepare(tree):
 def solve(program, recording, folder, environment=None):
     """What wait() said of the program, and the digest of its calibration."""
     folder.mkdir(exist_ok=True)
+    # With its tunables stated the program does not start itself again, which would forget its number.
+    stated = {**os.environ, "GLIBC_TUNABLES": "glibc.malloc.hugetlb=1", **(environment or {})}
     done = subprocess.run([program, "solve", recording, "--out", "cal.json"], cwd=folder, stdout=subprocess.DEVNULL,
-                          stderr=subprocess.DEVNULL, check=False, env={**os.environ, **(environment or {})})
+                          stderr=subprocess.DEVNULL, check=False, env=stated)
     return done.returncode << 8, digest_of(folder)
 
 
@@ -111,8 +129,8 @@ def digest_of(folder):
     return hashlib.sha256(calibration.read_bytes() if calibration.exists() else b"").hexdigest()
 
 
-def run_recording(bins, name, folder, names, solved, write):
-    """Solves a recording with every number that it reads; `solved` are the (setting, factor) of before."""
+def run_recording(bins, name, folder, names, asked, solved, write):
+    """Solves a recording with every number that is asked about and that it reads; `solved` are the (setting, factor) of before."""
     file = folder / f"{name}.jsonl.gz"
     if not file.exists():
         subprocess.run([bins / "odomcalib-sim-record", *RECORDINGS[name], "--out", file], check=True, stdout=subprocess.DEVNULL)
@@ -130,19 +148,21 @@ def run_recording(bins, name, folder, names, solved, write):
         (work / "status").unlink(missing_ok=True)
 
     harvest()  # of a run that was stopped
-    whole = [str(number) for number, setting in enumerate(names) if all((setting, factor) in solved for factor in FACTORS)]
+    whole = [str(number) for number, setting in enumerate(names)
+             if setting not in asked or all((setting, factor) in solved for factor in FACTORS)]
     (work / "done").write_text("\n".join(whole), encoding="utf-8")
     solve(bins / "odomcalibctl", file, work / "plain", {"ODOMCALIB_VARIED": str(work)})
     harvest()
     read = set(map(int, (work / "read").read_text(encoding="utf-8").split()))
     for number, setting in enumerate(names):
-        if number not in read and not any((setting, factor) in solved for factor in (*FACTORS, None)):
+        if setting in asked and number not in read and not any((setting, factor) in solved for factor in (*FACTORS, None)):
             write(setting=setting, factor=None, recording=name, changed=False)
     print(f"{name}: {len(read)} numbers read", file=sys.stderr)
 
 
 def run(bins, rows, jobs, recordings):
     names = json.loads((bins.parents[1] / "varied.json").read_text(encoding="utf-8"))
+    asked = {f"{layer}.{name}" for layer, name, _, comment in described() if not has_reason(comment)}
     folder = rows.resolve().with_suffix(".recordings")
     folder.mkdir(exist_ok=True)
     solved = collections.defaultdict(set)
@@ -154,43 +174,112 @@ def run(bins, rows, jobs, recordings):
             out.write(json.dumps(row) + "\n")
             out.flush()
 
-        list(pool.map(lambda name: run_recording(bins, name, folder, names, solved[name], write), recordings))
+        list(pool.map(lambda name: run_recording(bins, name, folder, names, asked, solved[name], write), recordings))
 
 
-def described():
+# Comment lines above constants, and the constants that follow one another without a line between.
+GROUP = re.compile(r"((?:^///.*\n)*)((?:^inline constexpr [^;]*;[^\n]*\n)+)", re.M)
+
+
+def described(root=ROOT):
     """Layer, name, value and comment of every number, as its settings file has them."""
     rows = []
-    for file in sorted((ROOT / "calib").glob("**/settings.hpp")):
-        text = file.read_text(encoding="utf-8")
-        for match in re.finditer(r"((?:^///.*\n)*)^inline constexpr [\w:]+ ([^;]*);", text, re.M):
-            comment = " ".join(line[3:].strip() for line in match.group(1).splitlines())
-            parts = re.split(r",\s*(?=k[A-Z]\w* =)", match.group(2))
-            for part in parts:
-                name, value = (side.strip() for side in part.split("=", 1))
-                rows.append((layer_of(file, ROOT), name, " ".join(value.split()), comment))
+    for file in sorted((root / "calib").glob("**/settings.hpp")):
+        for group in GROUP.finditer(file.read_text(encoding="utf-8")):
+            comment = " ".join(line[3:].strip() for line in group.group(1).splitlines())
+            for constant in CONSTANT.finditer(group.group(2)):
+                for part in re.split(r",\s*(?=k[A-Z]\w* =)", constant.group(2)):
+                    name, value = (side.strip() for side in part.split("=", 1))
+                    rows.append((layer_of(file, root), name, " ".join(value.split()), comment))
     return rows
+
+
+# Numbers of every kind, for --self-test.
+SELF_TEST_SETTINGS = """
+/// m. Chosen.
+inline constexpr double kA = 1.0, kAlso = 2.0;
+/// s. Chosen, untried.
+inline constexpr int kB = 1;
+
+/// Counts. Chosen.
+inline constexpr int kC = 1;
+/// Chosen: why.
+inline constexpr int kWhy = 1;
+/// Nothing is known.
+inline constexpr int kNone = 1;
+"""
+REASON = re.compile(r"\b(Derived|Published|Measured)\b|\bChosen(?:[:;]| as\b| for\b)")
+BY_TRIAL = re.compile(r"\bChosen(?:, (sensitive|insensitive|untried))?\.(?=\s|$)")
+
+
+def has_reason(comment):
+    """Whether a number's comment says more about where it comes from than that somebody chose it."""
+    return REASON.search(comment) is not None
+
+
+def lines_by_setting(file):
+    by_setting = collections.defaultdict(dict)
+    for line in map(json.loads, file.read_text(encoding="utf-8").splitlines()):
+        by_setting[line["setting"]][line["recording"], line["factor"]] = line
+    return by_setting
+
+
+def said_of(settings, by_setting):
+    """What the recordings that were solved with other values say of some settings together."""
+    lines = [line for setting in settings for line in by_setting[setting].values() if line["factor"]]
+    if not lines:
+        return "untried"
+    return "sensitive" if any(line["changed"] for line in lines) else "insensitive"
+
+
+def state(rows, root=ROOT):
+    """Writes into the settings files what the rows say of each number whose origin is no other."""
+    by_setting = lines_by_setting(rows)
+    for file in sorted((root / "calib").glob("**/settings.hpp")):
+        def stated(group):
+            names = [name for constant in CONSTANT.finditer(group.group(2)) for name in NAME.findall(constant.group(2))]
+            said = said_of([f"{layer_of(file, root)}.{name}" for name in names], by_setting)
+            return BY_TRIAL.sub(f"Chosen, {said}.", group.group(1)) + group.group(2)
+
+        text = file.read_text(encoding="utf-8")
+        if GROUP.sub(stated, text) != text:
+            file.write_text(GROUP.sub(stated, text), encoding="utf-8")
+
+
+def problems(rows, root=ROOT):
+    """Numbers without an origin, and those whose comment does not say what the rows say."""
+    by_setting, found, groups = lines_by_setting(rows), [], collections.defaultdict(list)
+    for layer, name, _, comment in described(root):
+        groups[layer, comment].append(f"{layer}.{name}")
+        if not has_reason(comment) and not BY_TRIAL.search(comment):
+            found.append(f"{layer}.{name}: no origin; write Derived, Published or Measured and from what, or Chosen: and why")
+    for (_, comment), settings in groups.items():
+        trial = None if has_reason(comment) else BY_TRIAL.search(comment)
+        if trial and trial.group(1) != said_of(settings, by_setting):
+            found.append(f"{settings[0]}: the rows say \"Chosen, {said_of(settings, by_setting)}.\"; run vary.py state")
+    return found
 
 
 def effect_of(lines, factor):
     """Of the recordings that were solved with a number times the factor: how many changed, in words."""
     of_factor = [line for line in lines if line["factor"] == factor]
-    if not of_factor:
-        return "not read"
-    changed = sum(line["changed"] for line in of_factor)
-    return f"{changed} of {len(of_factor)}"
+    return f"{sum(line['changed'] for line in of_factor)} of {len(of_factor)}" if of_factor else "not read"
 
 
-def table(files):
-    by_setting = collections.defaultdict(list)
-    for file in files:
-        for line in map(json.loads, file.read_text(encoding="utf-8").splitlines()):
-            by_setting[line["setting"]].append(line)
+def table(rows):
+    by_setting = lines_by_setting(rows)
+    trials = sorted({line["recording"] for lines in by_setting.values() for line in lines.values()})
+    words = collections.Counter(said_of([f"{layer}.{name}"], by_setting)
+                                for layer, name, _, comment in described() if not has_reason(comment))
+    print(PAGE.format(count=len(described()), recordings=", ".join(f"`{name}`" for name in trials), trials=len(trials),
+                      **{word: words[word] for word in ("insensitive", "sensitive", "untried")},
+                      reasoned=sum(has_reason(comment) for *_, comment in described())))
     layer = None
     for of, name, value, comment in described():
         if of != layer:
             layer = of
             print(f"\n## {layer}\n\n| number | value | what it is, and where it comes from | halved | doubled |\n| --- | --- | --- | --- | --- |")
-        lines = by_setting[f"{of}.{name}"]
+        lines = by_setting[f"{of}.{name}"].values()
         cells = [effect_of(lines, factor) if lines else "–" for factor in FACTORS]
         print(f"| `{name}` | {value} | {comment.replace('|', chr(92) + '|')} | {cells[0]} | {cells[1]} |")
 
@@ -208,28 +297,52 @@ def self_test():
             sys.exit(f"FAILED: {text}: {found}")
     if len(settings_of(ROOT)) < 500 or len({*settings_of(ROOT)}) != len(settings_of(ROOT)) or len(described()) < len(settings_of(ROOT)):
         sys.exit("FAILED: not every number of calib is found, or one twice")
+    with tempfile.TemporaryDirectory() as folder:
+        root, rows = pathlib.Path(folder), pathlib.Path(folder) / "rows.jsonl"
+        (root / "calib/fit").mkdir(parents=True)
+        file = root / "calib/fit/settings.hpp"
+        file.write_text(SELF_TEST_SETTINGS, encoding="utf-8")
+        rows.write_text("".join(json.dumps({"setting": f"fit.{name}", "factor": factor, "recording": "a", "changed": changed}) + "\n"
+                                for name, factor, changed in [("kA", 0.5, False), ("kA", 2.0, True), ("kB", 0.5, False), ("kC", None, False)]),
+                        encoding="utf-8")
+        if [problem.split(":")[0] for problem in problems(rows, root)] != ["fit.kNone", "fit.kA", "fit.kB", "fit.kC"]:
+            sys.exit(f"FAILED: found {problems(rows, root)}")
+        state(rows, root)
+        said = {name: comment for _, name, _, comment in described(root)}
+        for name, word in [("kA", "sensitive"), ("kAlso", "sensitive"), ("kB", "insensitive"), ("kC", "untried")]:
+            if f"Chosen, {word}." not in said[name]:
+                sys.exit(f"FAILED: {name} is said to be {said[name]}")
+        if [problem.split(":")[0] for problem in problems(rows, root)] != ["fit.kNone"] or "Chosen: why." not in said["kWhy"]:
+            sys.exit(f"FAILED: left {problems(rows, root)}")
 
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("what", nargs="?", choices=["prepare", "run", "table"])
+    parser.add_argument("what", nargs="?", choices=["prepare", "run", "state", "table"])
     parser.add_argument("bin", nargs="?", type=pathlib.Path)
     parser.add_argument("--into", type=pathlib.Path)
-    parser.add_argument("--rows", nargs="+", type=pathlib.Path)
+    parser.add_argument("--rows", type=pathlib.Path, default=ROWS)
     parser.add_argument("--jobs", type=int, default=os.cpu_count() or 1)
     parser.add_argument("--recordings", nargs="+", choices=RECORDINGS, default=list(RECORDINGS))
+    parser.add_argument("--check", action="store_true")
     parser.add_argument("--self-test", action="store_true")
     arguments = parser.parse_args()
     if arguments.self_test:
         self_test()
+    elif arguments.check:
+        found = problems(arguments.rows)
+        print("\n".join(found), f"{len(found)} numbers without a true origin", sep="\n" if found else "")
+        return 1 if found else 0
     elif arguments.what == "prepare" and arguments.into:
         prepare(arguments.into.resolve())
-    elif arguments.what == "run" and arguments.bin and arguments.rows:
-        run(arguments.bin.resolve(), arguments.rows[0], arguments.jobs, arguments.recordings)
-    elif arguments.what == "table" and arguments.rows:
+    elif arguments.what == "run" and arguments.bin:
+        run(arguments.bin.resolve(), arguments.rows, arguments.jobs, arguments.recordings)
+    elif arguments.what == "state":
+        state(arguments.rows)
+    elif arguments.what == "table":
         table(arguments.rows)
     else:
-        parser.error("prepare --into TREE, run BIN --rows FILE, or table --rows FILE")
+        parser.error("prepare --into TREE, run BIN, state, table, or --check")
     return 0
 
 
