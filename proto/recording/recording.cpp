@@ -269,6 +269,15 @@ Result<Recording> read_recording_bytes(const std::string& bytes, const std::file
 
 namespace {
 
+/// Whether changes wait that SQLite has not moved into the file: a killed recorder leaves them beside it.
+bool has_write_ahead_log(const std::filesystem::path& path) {
+  std::error_code none;
+  return std::filesystem::file_size(path.string() + "-wal", none) > 0 && !none;
+}
+
+constexpr const char* kWriteAheadLog =
+    "what lies in its -wal beside it; merge it: sqlite3 FILE 'PRAGMA wal_checkpoint(TRUNCATE)'";
+
 /// All files of a rosbag2 folder as one recording; its hash is that of the hashes of its files, one a line.
 Result<Recording> read_folder(const std::filesystem::path& folder, const Wanted& wanted, Overview& overview) {
   const auto found = ros::files_of(folder);
@@ -282,6 +291,7 @@ Result<Recording> read_folder(const std::filesystem::path& folder, const Wanted&
     if (!file) return file.error();
     hashes += sha256_hex(file.value()) + "\n";
     if (auto error = ros::read_container(file.value(), path.string(), collector)) return *error;
+    if (has_write_ahead_log(path)) builder.discard("file", path.filename().string() + ": " + kWriteAheadLog);
   }
   overview.form = "rosbag2 folder";
   overview.topics = ros::overview_of(collector.topics());
@@ -294,12 +304,6 @@ Result<Recording> read_folder(const std::filesystem::path& folder, const Wanted&
   recording.value().sha256 = sha256_hex(hashes);
   tell_where_it_ends(recording.value());
   return recording;
-}
-
-/// Whether changes wait that SQLite has not moved into the file: a killed recorder leaves them beside it.
-bool has_write_ahead_log(const std::filesystem::path& path) {
-  std::error_code none;
-  return std::filesystem::file_size(path.string() + "-wal", none) > 0 && !none;
 }
 
 Result<Recording> read_file(const std::filesystem::path& path, const Wanted& wanted, Overview& overview) {
@@ -324,9 +328,7 @@ Result<Recording> read_any(const std::filesystem::path& path, const Wanted& want
   if (std::filesystem::is_directory(path, none)) return read_folder(path, wanted, overview);
   auto recording = read_file(path, wanted, overview);
   if (recording && has_write_ahead_log(path))
-    recording.value().discarded.push_back(
-        {"file", "what lies in its -wal beside it; merge it: sqlite3 FILE 'PRAGMA wal_checkpoint(TRUNCATE)'",
-         1});
+    recording.value().discarded.push_back({"file", kWriteAheadLog, 1});
   return recording;
 }
 

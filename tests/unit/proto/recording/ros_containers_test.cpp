@@ -193,6 +193,38 @@ TEST(RosContainers, a_write_ahead_log_beside_the_file_is_told) {
   EXPECT_EQ(discarded_like(result.value(), "file", "wal_checkpoint"), 1U) << list_discarded(result.value());
 }
 
+/// An empty folder of its own for the test that runs.
+std::filesystem::path empty_folder(const std::string& name) {
+  auto folder = std::filesystem::path(testing::TempDir()) / ("odomcalib_" + name);
+  std::filesystem::remove_all(folder);
+  std::filesystem::create_directory(folder);
+  return folder;
+}
+
+TEST(RosContainers, write_ahead_logs_in_a_folder_are_told_with_their_files) {
+  const auto folder = empty_folder("folder_with_logs");
+  const sim::RosLog whole = small_log(Wire::cdr_little);
+  for (std::size_t k = 0; k < 3; ++k) {
+    sim::RosLog part{whole.wire, whole.topics, {}};
+    const auto n = static_cast<std::ptrdiff_t>(whole.messages.size());
+    const auto at = static_cast<std::ptrdiff_t>(k);
+    part.messages.assign(whole.messages.begin() + n * at / 3, whole.messages.begin() + n * (at + 1) / 3);
+    write_rosbag2(part, folder / ("drive_" + std::to_string(k) + ".db3"), {.write_ahead_log = true});
+  }
+  for (const char* name : {"drive_1.db3-wal", "drive_2.db3-wal"})
+    std::ofstream(folder / name) << "rows that are not in the file yet";
+  std::ofstream(folder / "drive_0.db3-wal") << "";  // all of it was moved
+  const RobotDescription robot = test::ros_robot();
+  const auto result = value_of(read_recording(folder, &robot));
+  std::filesystem::remove_all(folder);
+  expect_small_drive(result, MotionSource::wheels);
+  EXPECT_EQ(discarded_like(result, "file", "drive_1.db3: what lies in its -wal"), 1U)
+      << list_discarded(result);
+  EXPECT_EQ(discarded_like(result, "file", "drive_2.db3: what lies in its -wal"), 1U)
+      << list_discarded(result);
+  EXPECT_EQ(discarded_like(result, "file", "wal_checkpoint"), 2U) << list_discarded(result);
+}
+
 TEST(RosContainers, of_an_older_form_or_encrypted_say_what_to_do) {
   const std::vector<std::pair<std::string, std::string>> cases{
       {"#ROSBAG V1.2\n", "rosbag fix"},
