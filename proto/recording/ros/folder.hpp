@@ -14,9 +14,9 @@ struct FolderFiles {
   std::vector<std::string> missing;          ///< names of splits that are not there
 };
 
-/// The storage files in a folder (.db3, .mcap, each packed with zstd or not), ordered by the number that
-/// rosbag2 ends their names with. metadata.yaml is not needed: a recorder that was killed leaves none. Error:
-/// io, format (no such file).
+/// The storage files in a folder (.db3, .mcap, each packed with zstd or not): the splits NAME_0, NAME_1 and
+/// so on of one recording, ordered by their numbers, or one file of any name. metadata.yaml is not needed: a
+/// recorder that was killed leaves none. Error: io, format (no such file), usage (several recordings).
 Result<FolderFiles> files_of(const std::filesystem::path& folder);
 
 }  // namespace odomcalib::ros

@@ -225,6 +225,45 @@ TEST(RosContainers, write_ahead_logs_in_a_folder_are_told_with_their_files) {
   EXPECT_EQ(discarded_like(result, "file", "wal_checkpoint"), 2U) << list_discarded(result);
 }
 
+TEST(RosContainers, a_folder_of_several_recordings_is_refused_with_their_names) {
+  const std::string bytes = rosbag2_bytes(Wire::cdr_little);
+  const std::vector<std::pair<std::vector<std::string>, std::string>> cases{
+      {{"hall.db3", "lab.db3"}, "hall.db3, lab.db3"},
+      {{"drive1.db3", "drive2.db3"}, "drive1.db3, drive2.db3"},
+      {{"drive_01.db3", "drive_02.db3"}, "drive_01.db3, drive_02.db3"},
+      {{"hall_0.db3", "hall_1.db3", "lab_0.db3"}, "hall_0.db3 to hall_1.db3, lab_0.db3"},
+      {{"hall_0.db3", "hall_0.mcap"}, "hall_0.db3, hall_0.mcap"},
+      {{"run_20240501.db3", "run_20240502.db3"}, "run_20240501.db3, run_20240502.db3"},
+      {{"run_20240501120000.db3", "run_20240501130000.db3"},
+       "run_20240501120000.db3, run_20240501130000.db3"},
+  };
+  const RobotDescription robot = test::ros_robot();
+  for (const auto& [names, listed] : cases) {
+    const auto folder = empty_folder("several_bags");
+    for (const auto& name : names) std::ofstream(folder / name, std::ios::binary) << bytes;
+    const auto result = read_recording(folder, &robot);
+    std::filesystem::remove_all(folder);
+    ASSERT_FALSE(result.ok()) << listed;
+    EXPECT_NE(result.error().text().find("several_bags: holds several recordings: " + listed + "; name one"),
+              std::string::npos)
+        << result.error().text();
+  }
+}
+
+TEST(RosContainers, a_folder_of_one_file_of_any_name_lacks_nothing) {
+  const std::string bytes = rosbag2_bytes(Wire::cdr_little);
+  const RobotDescription robot = test::ros_robot();
+  for (const char* name :
+       {"hall.db3", "drive2.db3", "7.db3", "drive_0.db3", "drive_02.db3", "run_20240501.db3"}) {
+    const auto folder = empty_folder("one_bag");
+    std::ofstream(folder / name, std::ios::binary) << bytes;
+    const auto result = value_of(read_recording(folder, &robot));
+    std::filesystem::remove_all(folder);
+    expect_small_drive(result, MotionSource::wheels);
+    EXPECT_EQ(discarded_like(result, "file", ""), 0U) << name << ": " << list_discarded(result);
+  }
+}
+
 TEST(RosContainers, of_an_older_form_or_encrypted_say_what_to_do) {
   const std::vector<std::pair<std::string, std::string>> cases{
       {"#ROSBAG V1.2\n", "rosbag fix"},
