@@ -17,6 +17,7 @@ constexpr double kNoNumber = std::numeric_limits<double>::quiet_NaN();
 constexpr double kAssumedInterval = 0.2;  // s between scans of a log without time stamps
 constexpr std::size_t kMostCarmenBeams = 100'000;
 constexpr double kFarthest = 1e4;  // m
+constexpr std::string_view kOdometry = "ODOM";
 
 /// The words of one line; a word that is missing or no number reads as NaN.
 class Words {
@@ -56,11 +57,14 @@ struct Odometry {
   std::array<double, 3> pose{};
 };
 
+bool is_stamped(double t) { return std::isfinite(t); }
+
 struct Log {
   std::vector<Odometry> odometry;       // of ODOM lines
   std::vector<Odometry> scan_odometry;  // of laser lines: used when there are no ODOM lines
   std::vector<Scan> scans;
   std::optional<std::array<double, 3>> lidar_pose;
+  std::string_view open_end;  // message of a last line without its end and without a stamp
 };
 
 /// FLASER gives no angles: 180 degrees from the right; an odd number of beams includes both ends.
@@ -87,12 +91,13 @@ bool read_ranges(Words& words, std::vector<float>& ranges) {
 }
 
 /// Time stamps end a line: of the sending program (since 1970, or 0), its host, and of the logger (since its
-/// start).
+/// start). NaN: neither is there; programs that know no time write 0.
 double read_time(Words& words) {
   const double sent = words.number();
   words.word();
   const double logged = words.number();
-  return sent > 0.0 ? sent : logged;
+  if (sent > 0.0) return sent;
+  return logged > 0.0 ? logged : kNoNumber;
 }
 
 /// The lidar in the robot's frame, when the log tells the pose of both.
@@ -158,13 +163,22 @@ bool read_odometry(Words& words, Log& log) {
   return true;
 }
 
+bool is_remark(std::string_view word) { return word.empty() || word.starts_with('#'); }
+
 /// Lines that hold nothing for calibration, or the same again.
 bool is_other_line(std::string_view word) {
   static constexpr std::array<std::string_view, 12> kOther{"PARAM",   "SYNC",    "TRUEPOS",     "RLASER",
                                                            "LASER3",  "LASER4",  "RAWLASER1",   "RAWLASER2",
                                                            "NMEAGGA", "NMEARMC", "ROBOTLASER2", "MARKER"};
-  return word.empty() || word.starts_with('#') ||
-         std::find(kOther.begin(), kOther.end(), word) != kOther.end();
+  return std::find(kOther.begin(), kOther.end(), word) != kOther.end();
+}
+
+std::string not_taken(std::string_view name) { return std::string(name) + " was not taken"; }
+
+/// Whether the message that was just read lacks its stamp.
+bool is_without_stamp(std::string_view name, const Log& log) {
+  if (name == kOdometry) return !is_stamped(log.odometry.back().t);
+  return (name == "FLASER" || name == "ROBOTLASER1") && !is_stamped(log.scans.back().t);
 }
 
 void read_carmen_line(std::string_view line, bool last, Log& log, RecordingBuilder& builder) {
@@ -175,22 +189,42 @@ void read_carmen_line(std::string_view line, bool last, Log& log, RecordingBuild
     good = read_flaser(words, log);
   else if (name == "ROBOTLASER1")
     good = read_robotlaser(words, log);
-  else if (name == "ODOM")
+  else if (name == kOdometry)
     good = read_odometry(words, log);
-  else if (!is_other_line(name))
+  else if (is_other_line(name))
+    builder.discard("message", not_taken(name));
+  else if (!is_remark(name))
     builder.discard("line", "unknown message");
-  if (!good) builder.discard("line", last ? "cut off" : "too few or wrong fields");
+  if (!good)
+    builder.discard("line", last ? "cut off" : "too few or wrong fields");
+  else if (last && is_without_stamp(name, log))
+    log.open_end = name;
 }
 
+/// Whether the scans tell when they were made: a stamp that several of them share and no other one has was
+/// made up.
 bool has_times(const Log& log) {
-  const auto stamped = [](const auto& item) { return std::isfinite(item.t); };
-  return !log.scans.empty() && std::all_of(log.scans.begin(), log.scans.end(), stamped) &&
-         log.scans.front().t != log.scans.back().t;
+  const auto stamped = [](const Scan& scan) { return is_stamped(scan.t); };
+  const auto first = std::find_if(log.scans.begin(), log.scans.end(), stamped);
+  if (first == log.scans.end()) return false;
+  const bool is_only_one = std::none_of(std::next(first), log.scans.end(), stamped);
+  return is_only_one || std::any_of(first, log.scans.end(),
+                                    [&](const Scan& scan) { return stamped(scan) && scan.t != first->t; });
+}
+
+/// A stamp is the end of a line: where other lines have one, the last line was cut off before it.
+void drop_open_end(Log& log, RecordingBuilder& builder) {
+  if (log.open_end.empty()) return;
+  builder.discard("line", "cut off");
+  if (log.open_end == kOdometry) return log.odometry.pop_back();
+  log.scans.pop_back();
+  log.scan_odometry.pop_back();
 }
 
 /// Some logs were converted without their stamps: a made-up clock keeps them usable, and is reported.
 void assume_times(Log& log, RecordingBuilder& builder) {
   builder.discard("time stamp", "the log has none: 0.2 s per scan assumed", log.scans.size());
+  builder.discard("message", not_taken(kOdometry) + ": the scans have no time stamps", log.odometry.size());
   log.odometry.clear();
   for (std::size_t i = 0; i < log.scans.size(); ++i)
     log.scans[i].t = log.scan_odometry[i].t = kAssumedInterval * static_cast<double>(i);
@@ -198,7 +232,9 @@ void assume_times(Log& log, RecordingBuilder& builder) {
 
 /// Large stamps lose precision as seconds since 1970: count from the whole second of the first.
 void shift_times(Log& log, RecordingBuilder& builder) {
-  const double start = std::floor(log.scans.front().t);
+  const auto first =
+      std::find_if(log.scans.begin(), log.scans.end(), [](const Scan& scan) { return is_stamped(scan.t); });
+  const double start = std::floor(first->t);
   if (start < 1e6) return;
   builder.count_from(start);
   for (auto& scan : log.scans) scan.t -= start;
@@ -238,7 +274,12 @@ class CarmenCounts {
 
 void add_counts(const Log& log, const RobotDescription& robot, RecordingBuilder& builder) {
   CarmenCounts counts(robot);
-  const auto& odometry = log.odometry.size() > 1 ? log.odometry : log.scan_odometry;
+  const auto stamped = std::count_if(log.odometry.begin(), log.odometry.end(),
+                                     [](const Odometry& one) { return is_stamped(one.t); });
+  if (stamped < 2)
+    builder.discard("message", not_taken(kOdometry) + ": fewer than two have a time stamp",
+                    log.odometry.size());
+  const auto& odometry = stamped < 2 ? log.scan_odometry : log.odometry;
   for (const auto& sample : odometry) builder.add_ticks(counts.at(sample));
 }
 
@@ -249,8 +290,8 @@ bool looks_like_carmen(std::string_view text) {
     const std::size_t end = text.find('\n');
     Words words(text.substr(0, end));
     const auto name = words.word();
-    if (name == "FLASER" || name == "ROBOTLASER1" || name == "ODOM" || name == "PARAM") return true;
-    if (!name.empty() && !name.starts_with('#') && !is_other_line(name)) return false;
+    if (name == "FLASER" || name == "ROBOTLASER1" || name == kOdometry || name == "PARAM") return true;
+    if (!is_remark(name) && !is_other_line(name)) return false;
     text.remove_prefix(end == std::string_view::npos ? text.size() : end + 1);
   }
   return false;
@@ -265,7 +306,10 @@ void read_carmen(std::string_view text, const RobotDescription* robot, Recording
     text.remove_prefix(last ? text.size() : end + 1);
   }
   if (log.scans.empty()) return;
-  if (!has_times(log)) assume_times(log, builder);
+  if (has_times(log))
+    drop_open_end(log, builder);
+  else
+    assume_times(log, builder);
   shift_times(log, builder);
   RobotDescription description = robot != nullptr ? *robot : RobotDescription{};
   if (!description.lidar_pose) description.lidar_pose = log.lidar_pose;

@@ -213,5 +213,75 @@ TEST(CarmenLog, SX_03_reads_its_messages_with_their_times_and_the_lidar_pose) {
   EXPECT_EQ(discarded(r, "line", "cut off"), 1U);
 }
 
+/// A robot that drives 0.1 m a second ahead, with a scan each second.
+std::string carmen_scan(int k, const std::string& stamp) {
+  const std::string x = std::to_string(0.1 * k);
+  return "FLASER 3 1 2 3 " + x + " 0 0 " + x + " 0 0" + stamp;
+}
+
+std::string carmen_stamp(int k) { return " " + std::to_string(1000000000 + k) + ".25 host 0.5"; }
+
+TEST(CarmenLog, one_scan_without_a_stamp_leaves_the_stamps_of_the_others) {
+  const auto robot = test::example_robot();
+  for (const int wrong : {0, 3, 9})
+    for (const std::string stamp : {"", " x host y", " 0 host 0"}) {
+      std::string log;
+      for (int k = 0; k < 10; ++k) log += carmen_scan(k, k == wrong ? stamp : carmen_stamp(k)) + "\n";
+      const auto r = value_of(read_text(log, &robot));
+      ASSERT_EQ(r.scans.size(), 9U) << wrong << stamp << list_discarded(r);
+      EXPECT_NEAR(r.scans.back().t - r.scans.front().t, wrong == 3 ? 9.0 : 8.0, 1e-9);
+      EXPECT_EQ(r.time_zero, 1000000000.0 + (wrong == 0 ? 1.0 : 0.0));
+      EXPECT_EQ(r.ticks.size(), 9U);
+      EXPECT_EQ(discarded(r, "scan", "time stamp missing or impossible"), 1U) << list_discarded(r);
+      EXPECT_EQ(discarded(r, "time stamp", "the log has none: 0.2 s per scan assumed"), 0U);
+    }
+}
+
+TEST(CarmenLog, a_last_line_that_ends_before_its_stamp_is_cut_off) {
+  const auto robot = test::example_robot();
+  std::string log;
+  for (int k = 0; k < 9; ++k) log += carmen_scan(k, carmen_stamp(k)) + "\n";
+  auto r = value_of(read_text(log + carmen_scan(9, ""), &robot));
+  EXPECT_EQ(r.scans.size(), 9U);
+  EXPECT_EQ(r.scans.back().t, 8.25);
+  EXPECT_EQ(discarded(r, "line", "cut off"), 1U) << list_discarded(r);
+  EXPECT_EQ(r.discarded.size(), 1U) << list_discarded(r);
+  r = value_of(read_text("ODOM 0 0 0 0 0 0" + carmen_stamp(0) + "\nODOM 0.8 0 0 0 0 0" + carmen_stamp(8) +
+                             "\n" + log + "ODOM 0.9 0 0 0 0 0",
+                         &robot));
+  EXPECT_EQ(r.ticks.size(), 2U);
+  EXPECT_EQ(discarded(r, "line", "cut off"), 1U) << list_discarded(r);
+  EXPECT_EQ(r.discarded.size(), 1U) << list_discarded(r);
+}
+
+TEST(CarmenLog, without_any_stamp_gets_one_clock_for_all) {
+  const auto robot = test::example_robot();
+  for (const std::string stamp : {"", " 0 host 0", " 7 host 7"}) {
+    std::string log = "ODOM 0 0 0 0 0 0";
+    log.append(stamp).append("\nODOM 1 0 0 0 0 0").append(stamp);
+    for (int k = 0; k < 10; ++k) log.append("\n").append(carmen_scan(k, stamp));
+    const auto r = value_of(read_text(log, &robot));
+    ASSERT_EQ(r.scans.size(), 10U) << list_discarded(r);
+    EXPECT_NEAR(r.scans.back().t, 1.8, 1e-9);
+    EXPECT_EQ(discarded(r, "time stamp", "the log has none: 0.2 s per scan assumed"), 10U);
+    EXPECT_EQ(discarded(r, "message", "ODOM was not taken: the scans have no time stamps"), 2U)
+        << list_discarded(r);
+  }
+}
+
+TEST(CarmenLog, lines_that_are_not_used_are_told_by_their_names) {
+  const auto robot = test::example_robot();
+  std::string log = "# of a test\n\nPARAM a b 0 host 0\nODOM 0 0 0 0 0 0" + carmen_stamp(0) + "\n";
+  for (int k = 0; k < 3; ++k)
+    log +=
+        carmen_scan(k, carmen_stamp(k)) + "\nRLASER 1 1 0 0 0 0 0 0 0 host 0\nTRUEPOS 0 0 0 0 0 0 0 host 0\n";
+  const auto r = value_of(read_text(log, &robot));
+  EXPECT_EQ(discarded(r, "message", "RLASER was not taken"), 3U) << list_discarded(r);
+  EXPECT_EQ(discarded(r, "message", "TRUEPOS was not taken"), 3U);
+  EXPECT_EQ(discarded(r, "message", "PARAM was not taken"), 1U);
+  EXPECT_EQ(discarded(r, "message", "ODOM was not taken: fewer than two have a time stamp"), 1U);
+  EXPECT_EQ(r.discarded.size(), 4U) << list_discarded(r);
+}
+
 }  // namespace
 }  // namespace odomcalib::import_test
