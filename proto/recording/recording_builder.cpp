@@ -160,7 +160,8 @@ void RecordingBuilder::add_robot(RobotDescription robot) {
     have_robot_ = true;
   } else if (robot.left_wheel_diameter != old.left_wheel_diameter || robot.track_width != old.track_width ||
              robot.right_wheel_diameter != old.right_wheel_diameter || robot.lidar_pose != old.lidar_pose ||
-             robot.ticks_per_rev != old.ticks_per_rev) {
+             robot.ticks_per_rev != old.ticks_per_rev || robot.robot_id != old.robot_id ||
+             robot.controller != old.controller || robot.controller_id != old.controller_id) {
     discard("robot", "differs from the first robot description");
   }
 }

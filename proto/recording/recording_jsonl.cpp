@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <optional>
 
@@ -51,7 +52,7 @@ void add_robot(const JsonFields& fields, RecordingBuilder& builder) {
   const auto& pose = fields[Array::lidar_pose];
   if (pose.size() == 3 && std::all_of(pose.begin(), pose.end(), [](double v) { return std::isfinite(v); }))
     robot.lidar_pose = {pose[0], pose[1], pose[2]};
-  else if (!pose.empty())
+  else if (!pose.empty() || fields.is_of_wrong_type("lidar_pose"))
     builder.discard("robot", "lidar_pose is not three numbers");
   builder.add_robot(std::move(robot));
 }
@@ -120,6 +121,30 @@ void add_wheel_speeds(const JsonFields& fields, RecordingBuilder& builder) {
     builder.add_wheel_speeds({time_of(fields), fields[Scalar::left], fields[Scalar::right]});
 }
 
+/// Members without which a line is of use all the same, and what each is where it is of another type. The
+/// others are counted with their samples, or refused.
+constexpr std::array<std::pair<std::string_view, const char*>, 13> kOptional{{
+    {"sensor", " is no text"},
+    {"robot_id", " is no text"},
+    {"controller", " is no text"},
+    {"controller_id", " is no text"},
+    {"angles", " is no list of numbers"},
+    {"theta", " is no list of numbers"},
+    {"times", " is no list of numbers"},
+    {"ray_dt", " is no list of numbers"},
+    {"intensities", " is no list of numbers"},
+    {"time_increment", " is no number"},
+    {"range_min", " is no number"},
+    {"range_max", " is no number"},
+    {"time_zero", " is no number"},
+}};
+
+void count_wrong_types(const JsonFields& fields, RecordingBuilder& builder) {
+  if (fields.wrong_types.empty()) return;
+  for (const auto& [member, problem] : kOptional)
+    if (fields.is_of_wrong_type(member)) builder.discard("value", std::string(member) + problem);
+}
+
 void add_line(const JsonFields& fields, RecordingBuilder& builder) {
   const auto& type = fields[Text::type];
   if (type == "scan") {
@@ -140,8 +165,9 @@ void add_line(const JsonFields& fields, RecordingBuilder& builder) {
   } else if (type == "robot") {
     add_robot(fields, builder);
   } else {
-    builder.discard("line", type.empty() ? "no type" : "unknown type");
+    return builder.discard("line", type.empty() ? "no type" : "unknown type");
   }
+  count_wrong_types(fields, builder);
 }
 
 bool is_blank(std::string_view line) { return line.find_first_not_of(" \t\r") == std::string_view::npos; }

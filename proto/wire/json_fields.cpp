@@ -3,6 +3,7 @@
 #include <cmath>
 #include <limits>
 #include <nlohmann/json.hpp>
+#include <tuple>
 #include <utility>
 #include <variant>
 
@@ -61,9 +62,9 @@ constexpr std::array<std::pair<std::string_view, Slot>, 41> kLineMembers{{
     {"sm", Array::tuple_motion},
 }};
 
-Slot find_member(std::string_view name) {
-  for (const auto& [member, slot] : kLineMembers)
-    if (member == name) return slot;
+std::pair<std::string_view, Slot> find_member(std::string_view name) {
+  for (const auto& known : kLineMembers)
+    if (known.first == name) return known;
   return {};
 }
 
@@ -84,44 +85,68 @@ class Handler {
         (std::get<Array>(slot_) == Array::ranges || std::get<Array>(slot_) == Array::intensities);
     return number(no_reading ? 0.0 : kAbsent);
   }
-  bool boolean(bool) { return number(kAbsent); }
-  bool number_integer(number_integer_t value) { return integer(value); }
+  bool boolean(bool) {
+    note_wrong_type();
+    return number(kAbsent);
+  }
+  bool number_integer(number_integer_t value) {
+    note_lone_number();
+    return is_text() ? text(std::to_string(value)) : integer(value);
+  }
   bool number_unsigned(number_unsigned_t value) {
+    note_lone_number();
+    if (is_text()) return text(std::to_string(value));
     if (value > static_cast<number_unsigned_t>(std::numeric_limits<std::int64_t>::max()))
       return number(static_cast<double>(value));
     return integer(static_cast<std::int64_t>(value));
   }
-  bool number_float(number_float_t value, const string_t&) {
+  bool number_float(number_float_t value, const string_t& written) {
+    note_lone_number();
+    if (is_text()) return text(written);
     if (depth_ == 1 && std::abs(value) <= kExactInteger && std::trunc(value) == value)
       return integer(static_cast<std::int64_t>(value));
     return number(value);
   }
   bool string(string_t& value) {
-    if (depth_ == 1 && std::holds_alternative<Text>(slot_)) {
-      fields_.texts.at(static_cast<std::size_t>(std::get<Text>(slot_))) = std::move(value);
-      return true;
-    }
+    if (is_text()) return text(std::move(value));
+    if (!value.empty()) note_wrong_type();  // empty: what blank_non_finite() leaves
     return number(kAbsent);
   }
   bool binary(binary_t&) { return false; }
-  bool start_object(std::size_t) { return open(); }
+  bool start_object(std::size_t) {
+    note_wrong_type();
+    return open();
+  }
   bool end_object() { return close(); }
   bool start_array(std::size_t) {
     if (depth_ == 0) return false;
     if (depth_ == 1 && std::holds_alternative<Array>(slot_)) {
       array_ = &fields_.arrays.at(static_cast<std::size_t>(std::get<Array>(slot_)));
       array_->clear();
+    } else {
+      note_wrong_type();
     }
     return open();
   }
   bool end_array() { return close(); }
   bool key(string_t& name) {
-    if (depth_ == 1) slot_ = find_member(name);
+    if (depth_ == 1) std::tie(member_, slot_) = find_member(name);
     return true;
   }
   bool parse_error(std::size_t, const std::string&, const nlohmann::detail::exception&) { return false; }
 
  private:
+  [[nodiscard]] bool is_text() const { return depth_ == 1 && std::holds_alternative<Text>(slot_); }
+  void note_wrong_type() {
+    if (depth_ == 1 && !std::holds_alternative<std::monostate>(slot_)) fields_.wrong_types.push_back(member_);
+  }
+  void note_lone_number() {
+    if (std::holds_alternative<Array>(slot_)) note_wrong_type();
+  }
+  bool text(std::string value) {
+    fields_.texts.at(static_cast<std::size_t>(std::get<Text>(slot_))) = std::move(value);
+    return true;
+  }
   bool open() {
     if (++depth_ == 3 && array_ != nullptr) array_->push_back(kAbsent);  // a nested value is not a number
     return depth_ <= kDeepest;
@@ -149,6 +174,7 @@ class Handler {
   }
 
   JsonFields& fields_;
+  std::string_view member_;
   Slot slot_;
   std::vector<double>* array_ = nullptr;  // the known array that is open at depth 2
   int depth_ = 0;
@@ -191,6 +217,7 @@ void JsonFields::clear() {
   counts = {};
   for (auto& array : arrays) array.clear();
   for (auto& text : texts) text.clear();
+  wrong_types.clear();
 }
 
 bool parse_fields(std::string_view text, JsonFields& fields) {

@@ -2,6 +2,7 @@
 // proto/.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -62,12 +63,18 @@ struct JsonFields {
   std::array<std::optional<std::int64_t>, 2> counts;
   /// Elements that are not numbers are NaN; null in ranges and intensities is 0.
   std::array<std::vector<double>, static_cast<std::size_t>(Array::count)> arrays;
+  /// A number is its text.
   std::array<std::string, static_cast<std::size_t>(Text::count)> texts;
   /// Scalars that were written at all, number or not.
   std::array<bool, static_cast<std::size_t>(Scalar::count)> present{};
+  /// Names of members whose value is of another type than theirs; null is absent, NaN a number.
+  std::vector<std::string_view> wrong_types;
 
   void clear();
   [[nodiscard]] double operator[](Scalar field) const { return scalars.at(static_cast<std::size_t>(field)); }
+  [[nodiscard]] bool is_of_wrong_type(std::string_view member) const {
+    return std::find(wrong_types.begin(), wrong_types.end(), member) != wrong_types.end();
+  }
   [[nodiscard]] bool has(Scalar field) const { return present.at(static_cast<std::size_t>(field)); }
   [[nodiscard]] const std::vector<double>& operator[](Array field) const {
     return arrays.at(static_cast<std::size_t>(field));

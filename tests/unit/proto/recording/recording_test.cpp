@@ -71,6 +71,76 @@ TEST(Recording, reads_every_kind_of_line) {
   EXPECT_EQ(r.gyro[0].yaw_rate, -0.25);
 }
 
+/// A scan line with one more member.
+std::string scan_with(const std::string& member) {
+  return R"({"type":"scan","t":1,"angle_min":-1,"angle_increment":0.5,"ranges":[1,null,3],)" + member + "}\n";
+}
+
+TEST(Recording, takes_numbers_as_names) {
+  const auto r = value_of(read_text(
+      R"({"type":"robot","wheel_diameter":0.154,"track_width":0.33,"ticks_per_rev":2000,"robot_id":12,)"
+      R"("controller":18446744073709551615,"controller_id":-3})"
+      "\n" +
+      ticks_line(0, 0, 0) + scan_with(R"("sensor":0)") + scan_with(R"("sensor":1)") +
+      scan_with(R"("sensor":1.50)") + scan_with(R"("sensor":null)")));
+  ASSERT_EQ(r.scans.size(), 4U) << list_discarded(r);
+  EXPECT_EQ(r.scans[0].sensor, "0");
+  EXPECT_EQ(r.scans[1].sensor, "1");
+  EXPECT_EQ(r.scans[2].sensor, "1.50");
+  EXPECT_EQ(r.scans[3].sensor, "");
+  EXPECT_EQ(r.robot.robot_id, "12");
+  EXPECT_EQ(r.robot.controller, "18446744073709551615");
+  EXPECT_EQ(r.robot.controller_id, "-3");
+  EXPECT_EQ(r.discarded.size(), 0U) << list_discarded(r);
+}
+
+TEST(Recording, counts_values_of_a_wrong_type) {
+  for (const auto& [member, reason] : std::vector<std::pair<std::string, std::string>>{
+           {R"("sensor":true)", "sensor is no text"},
+           {R"("sensor":{"id":0})", "sensor is no text"},
+           {R"("sensor":["front"])", "sensor is no text"},
+           {R"("angles":"-1 0 1")", "angles is no list of numbers"},
+           {R"("theta":{"a":1})", "theta is no list of numbers"},
+           {R"("times":0.1)", "times is no list of numbers"},
+           {R"("intensities":false)", "intensities is no list of numbers"},
+           {R"("range_max":"8")", "range_max is no number"},
+           {R"("time_increment":[0.1])", "time_increment is no number"}}) {
+    const auto r = value_of(read_text(kRobotLine + ticks_line(0, 0, 0) + scan_with(member)));
+    EXPECT_EQ(r.scans.size(), 1U) << member;
+    EXPECT_EQ(discarded(r, "value", reason), 1U) << member << ": " << list_discarded(r);
+    EXPECT_EQ(r.discarded.size(), 1U) << member << ": " << list_discarded(r);
+  }
+  const std::string robot =
+      R"({"type":"robot","wheel_diameter":0.154,"track_width":0.33,"ticks_per_rev":2000,)";
+  for (const auto& [member, what, reason] : std::vector<std::array<std::string, 3>>{
+           {R"("robot_id":["r1"])", "value", "robot_id is no text"},
+           {R"("controller":false)", "value", "controller is no text"},
+           {R"("time_zero":"2024-05-01")", "value", "time_zero is no number"},
+           {R"("lidar_pose":{"x":0.1,"y":0,"yaw":0})", "robot", "lidar_pose is not three numbers"},
+           {R"("lidar_pose":"0.1 0 0")", "robot", "lidar_pose is not three numbers"},
+           {R"("lidar_pose":0.1)", "robot", "lidar_pose is not three numbers"}}) {
+    const auto r = value_of(read_text(robot + member + "}\n" + ticks_line(0, 0, 0)));
+    EXPECT_EQ(discarded(r, what, reason), 1U) << member << ": " << list_discarded(r);
+    EXPECT_EQ(r.discarded.size(), 1U) << member << ": " << list_discarded(r);
+  }
+}
+
+TEST(Recording, notices_a_second_robot_of_the_same_sizes) {
+  const std::string robot =
+      R"({"type":"robot","wheel_diameter":0.154,"track_width":0.33,"ticks_per_rev":2000)";
+  const auto line_with = [&](const std::string& member, const std::string& value) {
+    return robot + ",\"" + member + "\":\"" + value + "\"}\n";
+  };
+  for (const char* member : {"robot_id", "controller", "controller_id"}) {
+    const auto line = [&](const std::string& value) { return line_with(member, value); };
+    auto r = value_of(read_text(line("a") + ticks_line(0, 0, 0) + line("b") + ticks_line(1, 0, 0)));
+    EXPECT_EQ(discarded(r, "robot", "differs from the first robot description"), 1U)
+        << member << list_discarded(r);
+    r = value_of(read_text(line("a") + ticks_line(0, 0, 0) + line("a") + ticks_line(1, 0, 0)));
+    EXPECT_EQ(r.discarded.size(), 0U) << list_discarded(r);
+  }
+}
+
 TEST(Recording, names_the_missing_or_impossible_unit) {
   const std::vector<std::pair<std::string, std::string>> cases{
       {R"({"type":"robot","track_width":0.3,"ticks_per_rev":2000})", "wheel_diameter"},
