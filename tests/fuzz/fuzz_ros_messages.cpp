@@ -39,15 +39,17 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
       if (const auto pose = decode_pose(bytes, encoding)) require(std::isfinite(pose->yaw));
       break;
     case 5:
-      if (const auto transforms = decode_transforms(bytes, encoding); transforms && !transforms->empty()) {
-        require(transforms->size() <= size / (7 * sizeof(double)));
-        const auto found = mounting_of(*transforms, {transforms->front().frame}, transforms->back().child);
+      if (const auto read = decode_transforms(bytes, encoding)) {
+        const auto& transforms = read->usable;
+        require(transforms.size() + read->unusable <= size / (7 * sizeof(double)));
+        if (transforms.empty()) break;
+        const auto found = mounting_of(transforms, {transforms.front().frame}, transforms.back().child);
         require(!found || std::isfinite(found->pose[0] + found->pose[1] + found->pose[2]));
       }
       break;
     default:
       if (const auto text = decode_text(bytes, encoding))
-        for (const Transform& joint : fixed_joints(*text)) {
+        for (const Transform& joint : fixed_joints(*text).value_or(Transforms{}).usable) {
           require(!joint.frame.empty() && !joint.child.empty());
           for (const double one : joint.position) require(std::isfinite(one));
           for (const double one : joint.quaternion) require(std::isfinite(one));

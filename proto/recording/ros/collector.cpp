@@ -102,7 +102,8 @@ bool add_pose(Topic& topic, std::int64_t received, std::string_view bytes) {
 bool add_transforms(Topic& topic, std::string_view bytes) {
   auto transforms = decode_transforms(bytes, topic.encoding);
   if (!transforms) return false;
-  for (Transform& one : *transforms) {
+  topic.unusable += transforms->unusable;
+  for (Transform& one : transforms->usable) {
     one.frame = frame_name(one.frame);
     one.child = frame_name(one.child);
     std::erase_if(topic.transforms, [&](const Transform& known) { return known.child == one.child; });
@@ -111,11 +112,14 @@ bool add_transforms(Topic& topic, std::string_view bytes) {
   return true;
 }
 
-/// The last description counts.
+/// The last description that can be read counts.
 bool add_description(Topic& topic, std::string_view bytes) {
   const auto text = decode_text(bytes, topic.encoding);
   if (!text) return false;
-  topic.transforms = fixed_joints(*text);
+  auto joints = fixed_joints(*text);
+  if (!joints) return false;
+  topic.unusable = joints->unusable;
+  topic.transforms = std::move(joints->usable);
   for (Transform& one : topic.transforms) {
     one.frame = frame_name(one.frame);
     one.child = frame_name(one.child);

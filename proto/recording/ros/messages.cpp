@@ -121,6 +121,10 @@ bool is_rotation(const std::array<double, 4>& q) {
   return std::abs(norm - 1.0) <= kQuaternionTolerance;
 }
 
+bool is_finite(const std::array<double, 3>& position) {
+  return std::all_of(position.begin(), position.end(), [](double one) { return std::isfinite(one); });
+}
+
 /// Position and quaternion. False when there is no heading.
 bool read_pose(MessageReader& reader, PoseMessage& out) {
   const auto position = reader.numbers<double, 3>();
@@ -226,9 +230,9 @@ std::optional<PoseMessage> decode_pose(std::string_view bytes, Encoding encoding
   return if_whole(reader, std::move(out));
 }
 
-std::optional<std::vector<Transform>> decode_transforms(std::string_view bytes, Encoding encoding) {
+std::optional<Transforms> decode_transforms(std::string_view bytes, Encoding encoding) {
   MessageReader reader(bytes, encoding);
-  std::vector<Transform> out;
+  Transforms out;
   const std::size_t count = reader.count(kMostTransforms);
   for (std::size_t i = 0; i < count && reader.ok(); ++i) {
     Transform one;
@@ -236,8 +240,10 @@ std::optional<std::vector<Transform>> decode_transforms(std::string_view bytes, 
     one.child = reader.text();
     one.position = reader.numbers<double, 3>();
     one.quaternion = reader.numbers<double, 4>();
-    if (!is_rotation(one.quaternion)) return std::nullopt;
-    out.push_back(std::move(one));
+    if (is_finite(one.position) && is_rotation(one.quaternion))
+      out.usable.push_back(std::move(one));
+    else
+      ++out.unusable;
   }
   return if_whole(reader, std::move(out));
 }

@@ -68,13 +68,19 @@ struct Transform {
   std::array<double, 4> quaternion{};  ///< x, y, z, w; of norm 1
 };
 
+/// Transforms of one message or description, in its order.
+struct Transforms {
+  std::vector<Transform> usable;
+  std::size_t unusable = 0;  ///< a position that is not finite, or a quaternion that is no rotation
+};
+
 // Nothing when the bytes do not hold what the type says.
 std::optional<LaserScan> decode_scan(std::string_view bytes, Encoding encoding);
 std::optional<JointState> decode_joints(std::string_view bytes, Encoding encoding);
 std::optional<Imu> decode_imu(std::string_view bytes, Encoding encoding);
 std::optional<PoseMessage> decode_odometry(std::string_view bytes, Encoding encoding);
 std::optional<PoseMessage> decode_pose(std::string_view bytes, Encoding encoding);
-std::optional<std::vector<Transform>> decode_transforms(std::string_view bytes, Encoding encoding);
+std::optional<Transforms> decode_transforms(std::string_view bytes, Encoding encoding);
 /// std_msgs/String.
 std::optional<std::string> decode_text(std::string_view bytes, Encoding encoding);
 

@@ -168,13 +168,14 @@ void tell_rest(RecordingBuilder& builder, const Collector& collector, const Chos
   const auto taken = taken_topics(chosen);
   for (const Topic& topic : collector.topics()) {
     const bool is_taken = std::find(taken.begin(), taken.end(), &topic) != taken.end();
-    if (tells_mounting(topic.kind)) continue;  // they are no samples
+    const std::string& name = topic.header.name;
+    builder.discard("transform", name + ": position or rotation missing or impossible", topic.unusable);
     if (topic.kind == Kind::none)
       builder.discard("message", unread(topic), topic.count);
-    else if (!is_taken)
-      builder.discard("message", topic.header.name + " was not taken", topic.count);
+    else if (!is_taken && !tells_mounting(topic.kind))  // what tells it is no samples, and always read
+      builder.discard("message", name + " was not taken", topic.count);
     else
-      builder.discard("message", topic.header.name + ": does not hold what its type says", topic.malformed);
+      builder.discard("message", name + ": does not hold what its type says", topic.malformed);
   }
   for (const auto& [what, count] : collector.discarded()) builder.discard(what.first, what.second, count);
 }

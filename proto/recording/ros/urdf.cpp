@@ -4,7 +4,6 @@
 
 #include <cmath>
 #include <locale>
-#include <optional>
 #include <sstream>
 #include <string_view>
 
@@ -41,9 +40,12 @@ std::string link_of(const tinyxml2::XMLElement& joint, const char* which) {
   return link != nullptr ? link : "";
 }
 
-std::optional<Transform> fixed_joint(const tinyxml2::XMLElement& joint) {
+bool is_fixed(const tinyxml2::XMLElement& joint) {
   const char* type = joint.Attribute("type");
-  if (type == nullptr || std::string_view(type) != "fixed") return std::nullopt;
+  return type != nullptr && std::string_view(type) == "fixed";
+}
+
+std::optional<Transform> pose_of(const tinyxml2::XMLElement& joint) {
   const auto* origin = joint.FirstChildElement("origin");
   const auto position = three_numbers(origin != nullptr ? origin->Attribute("xyz") : nullptr);
   const auto rpy = three_numbers(origin != nullptr ? origin->Attribute("rpy") : nullptr);
@@ -56,14 +58,20 @@ std::optional<Transform> fixed_joint(const tinyxml2::XMLElement& joint) {
 
 }  // namespace
 
-std::vector<Transform> fixed_joints(const std::string& urdf) {
+std::optional<Transforms> fixed_joints(const std::string& urdf) {
   tinyxml2::XMLDocument document;
-  if (document.Parse(urdf.c_str(), urdf.size()) != tinyxml2::XML_SUCCESS) return {};
+  if (document.Parse(urdf.c_str(), urdf.size()) != tinyxml2::XML_SUCCESS) return std::nullopt;
   const auto* robot = document.FirstChildElement("robot");
-  std::vector<Transform> joints;
-  for (const auto* joint = robot != nullptr ? robot->FirstChildElement("joint") : nullptr;
-       joint != nullptr && joints.size() < kMostJoints; joint = joint->NextSiblingElement("joint"))
-    if (auto one = fixed_joint(*joint)) joints.push_back(std::move(*one));
+  if (robot == nullptr) return std::nullopt;
+  Transforms joints;
+  for (const auto* joint = robot->FirstChildElement("joint");
+       joint != nullptr && joints.usable.size() < kMostJoints; joint = joint->NextSiblingElement("joint")) {
+    if (!is_fixed(*joint)) continue;
+    if (auto one = pose_of(*joint))
+      joints.usable.push_back(std::move(*one));
+    else
+      ++joints.unusable;
+  }
   return joints;
 }
 

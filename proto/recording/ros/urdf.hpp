@@ -2,15 +2,15 @@
 // proto/.
 #pragma once
 
+#include <optional>
 #include <string>
-#include <vector>
 
 #include "proto/recording/ros/messages.hpp"
 
 namespace odomcalib::ros {
 
-/// The joints that do not move, each as the pose of its child in its parent. Joints whose numbers are none
-/// are left out. Empty also where the text is no URDF.
-std::vector<Transform> fixed_joints(const std::string& urdf);
+/// The joints that do not move, each as the pose of its child in its parent. Joints whose numbers are none or
+/// that lack a link are counted. Nothing where the text is no URDF.
+std::optional<Transforms> fixed_joints(const std::string& urdf);
 
 }  // namespace odomcalib::ros

@@ -14,7 +14,10 @@ using sim::RosLog;
 using sim::RosTransform;
 using sim::Wire;
 using test::all_told;
+using test::discarded;
+using test::discarded_like;
 using test::kRosStart;
+using test::list_discarded;
 using test::read_ros;
 using test::small_log;
 using test::told;
@@ -166,6 +169,46 @@ TEST(RosMounting, by_a_description_that_moves_or_is_none_is_none) {
   const auto elsewhere =
       value_of(read_ros(write_mcap(with_description(Wire::cdr_little, urdf_of("fixed"), {}, "/news"))));
   EXPECT_FALSE(elsewhere.robot.lidar_pose);
+}
+
+TEST(RosMounting, loses_a_transform_that_is_none_and_no_other) {
+  for (const auto& [position, quaternion] :
+       std::vector<std::pair<std::array<double, 3>, std::array<double, 4>>>{
+           {{}, {}}, {{}, {0.0, 0.0, 0.0, std::nan("")}}, {{0.0, HUGE_VAL, 0.0}, {0.0, 0.0, 0.0, 1.0}}}) {
+    auto placed_frames = frames(about_z(0.25));
+    placed_frames.insert(placed_frames.begin() + 1, placed("base_link", "camera", position, quaternion));
+    const auto found = value_of(read_ros(write_mcap(with_frames(Wire::cdr_little, placed_frames))));
+    ASSERT_TRUE(found.robot.lidar_pose) << all_told(found.choices);
+    EXPECT_NEAR((*found.robot.lidar_pose)[1], 0.15, 1e-12);
+    EXPECT_EQ(discarded(found, "transform", "/tf_static: position or rotation missing or impossible"), 1U)
+        << list_discarded(found);
+    EXPECT_EQ(discarded_like(found, "message", "/tf_static"), 0U) << list_discarded(found);
+  }
+  std::string urdf = urdf_of("fixed");
+  urdf.insert(urdf.find("</robot>"),
+              R"(<joint name="c" type="fixed"><parent link="base_link"/><child link="camera"/>)"
+              R"(<origin xyz="0 0 high"/></joint><joint name="d" type="fixed"><child link="lamp"/></joint>)");
+  const auto found = value_of(read_ros(write_mcap(with_description(Wire::cdr_little, urdf))));
+  ASSERT_TRUE(found.robot.lidar_pose) << all_told(found.choices);
+  EXPECT_EQ(discarded(found, "transform", "/robot_description: position or rotation missing or impossible"),
+            2U)
+      << list_discarded(found);
+}
+
+TEST(RosMounting, of_messages_that_cannot_be_read_is_counted_and_what_came_before_stays) {
+  RosLog log =
+      with_description(Wire::cdr_little, urdf_of("fixed"), {placed("base_footprint", "base_link", {})});
+  log.add("/tf_static", "tf2_msgs/TFMessage", kRosStart, std::string("\0\1\0\0\xff\xff\xff\xff", 8));
+  for (const std::string& text :
+       {urdf_of("fixed").substr(0, 300), std::string("no robot"), std::string(), std::string("<html/>")})
+    log.add("/robot_description", "std_msgs/String", kRosStart, encode_text(log.wire, text));
+  log.add("/robot_description", "std_msgs/String", kRosStart, std::string("\0\1\0\0\xff\xff\xff\xff", 8));
+  const auto found = value_of(read_ros(write_mcap(log)));
+  EXPECT_TRUE(found.robot.lidar_pose) << all_told(found.choices);
+  EXPECT_EQ(discarded(found, "message", "/tf_static: does not hold what its type says"), 1U)
+      << list_discarded(found);
+  EXPECT_EQ(discarded(found, "message", "/robot_description: does not hold what its type says"), 5U)
+      << list_discarded(found);
 }
 
 }  // namespace
