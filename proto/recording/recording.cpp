@@ -278,6 +278,15 @@ bool has_write_ahead_log(const std::filesystem::path& path) {
 constexpr const char* kWriteAheadLog =
     "what lies in its -wal beside it; merge it: sqlite3 FILE 'PRAGMA wal_checkpoint(TRUNCATE)'";
 
+/// The error, with another remedy where what a file lacks may lie in its log.
+Error with_log(Error error, const std::filesystem::path& path) {
+  const bool is_lacking = error.code == ErrorCode::format || error.code == ErrorCode::empty;
+  if (is_lacking && has_write_ahead_log(path))
+    error.remedy =
+        "merge what lies in its -wal beside it first: sqlite3 FILE 'PRAGMA wal_checkpoint(TRUNCATE)'";
+  return error;
+}
+
 /// All files of a rosbag2 folder as one recording; its hash is that of the hashes of its files, one a line.
 Result<Recording> read_folder(const std::filesystem::path& folder, const Wanted& wanted, Overview& overview) {
   const auto found = ros::files_of(folder);
@@ -290,7 +299,8 @@ Result<Recording> read_folder(const std::filesystem::path& folder, const Wanted&
     const auto file = read_file_bytes(path);
     if (!file) return file.error();
     hashes += sha256_hex(file.value()) + "\n";
-    if (auto error = ros::read_container(file.value(), path.string(), collector)) return *error;
+    if (auto error = ros::read_container(file.value(), path.string(), collector))
+      return with_log(*error, path);
     if (has_write_ahead_log(path)) builder.discard("file", path.filename().string() + ": " + kWriteAheadLog);
   }
   overview.form = "rosbag2 folder";
@@ -327,8 +337,8 @@ Result<Recording> read_any(const std::filesystem::path& path, const Wanted& want
   std::error_code none;
   if (std::filesystem::is_directory(path, none)) return read_folder(path, wanted, overview);
   auto recording = read_file(path, wanted, overview);
-  if (recording && has_write_ahead_log(path))
-    recording.value().discarded.push_back({"file", kWriteAheadLog, 1});
+  if (!recording) return with_log(recording.error(), path);
+  if (has_write_ahead_log(path)) recording.value().discarded.push_back({"file", kWriteAheadLog, 1});
   return recording;
 }
 

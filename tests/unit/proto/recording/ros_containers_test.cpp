@@ -225,6 +225,24 @@ TEST(RosContainers, write_ahead_logs_in_a_folder_are_told_with_their_files) {
   EXPECT_EQ(discarded_like(result, "file", "wal_checkpoint"), 2U) << list_discarded(result);
 }
 
+TEST(RosContainers, whose_content_all_lies_in_the_write_ahead_log_say_how_to_merge_it) {
+  const RobotDescription robot = test::ros_robot();
+  for (const std::size_t size : {std::size_t{0}, std::size_t{4096}}) {
+    const auto folder = empty_folder("all_in_the_log");
+    const auto file = folder / "drive_0.db3";
+    std::ofstream(file, std::ios::binary) << rosbag2_bytes(Wire::cdr_little).substr(0, size);
+    std::ofstream(file.string() + "-wal") << "rows that are not in the file yet";
+    for (const auto& path : {file, folder}) {
+      const auto result = read_recording(path, &robot);
+      ASSERT_FALSE(result.ok()) << path << size;
+      EXPECT_NE(result.error().text().find("; merge what lies in its -wal beside it first"),
+                std::string::npos)
+          << path << size << result.error().text();
+    }
+    std::filesystem::remove_all(folder);
+  }
+}
+
 TEST(RosContainers, a_folder_of_several_recordings_is_refused_with_their_names) {
   const std::string bytes = rosbag2_bytes(Wire::cdr_little);
   const std::vector<std::pair<std::vector<std::string>, std::string>> cases{
