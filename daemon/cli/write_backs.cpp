@@ -46,6 +46,7 @@ Result<std::vector<WriteBack>> entries_of_folder(const fs::path& state_folder) {
     return Error{ErrorCode::io, "cannot read the history: " + error.message(), folder.string(), kRemedy};
   std::vector<WriteBack> entries;
   const History history(folder);
+  if (history.unlisted()) return *history.unlisted();
   for (const HistoryEntry& entry : history.entries()) entries.push_back({entry, ""});
   for (const fs::path& path : history.unreadable())
     warn(path.string() + ": holds no write-back that can be read; left out");

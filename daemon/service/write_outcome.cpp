@@ -123,6 +123,10 @@ void settle_from_journal(RobotParts& parts) {
     values.history.keep(*end.entry);
     if (!end.noted) values.unwritten.push_back(*end.entry);
   }
+  for (const JournalDamage& damage : values.journal_damage())
+    parts.outbox.event(messages::Severity::warning, "journal", to_text(damage));
+  if (const auto& why = values.history.unlisted())
+    parts.outbox.event(messages::Severity::warning, "history", why->text());
   for (const std::filesystem::path& path : values.history.unreadable())
     parts.outbox.event(messages::Severity::warning, "history",
                        path.string() + ": holds no write-back that can be read; rollback passes over it");

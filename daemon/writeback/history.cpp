@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <charconv>
 #include <nlohmann/json.hpp>
+#include <system_error>
 
 #include "proto/file_bytes.hpp"
 
@@ -77,18 +78,24 @@ std::optional<HistoryEntry> history_entry_from(const ordered_json& body) {
   }
 }
 
-std::vector<std::filesystem::path> History::files() const {
-  std::vector<std::filesystem::path> found;
+History::Listing History::listing() const {
+  Listing all;
+  std::vector<std::filesystem::path>& found = all.files;
   std::error_code error;
   for (std::filesystem::directory_iterator it(folder_, error), end; !error && it != end; it.increment(error))
     if (it->path().extension() == ".json") found.push_back(it->path());
   std::sort(found.begin(), found.end(),
             [](const auto& a, const auto& b) { return number_of(a) > number_of(b); });
-  return found;
+  if (error && error != std::errc::no_such_file_or_directory)
+    all.error = Error{ErrorCode::io, "cannot read the history: " + error.message(), folder_.string(),
+                      "check this folder and its file system, then restart the daemon"};
+  return all;
 }
 
 History::History(std::filesystem::path folder) : folder_(std::move(folder)) {
-  for (const auto& path : files()) {
+  Listing all = listing();
+  unlisted_ = std::move(all.error);
+  for (const auto& path : all.files) {
     newest_ = std::max(newest_, number_of(path));
     if (auto entry = entry_from(path))
       entries_.push_back(std::move(*entry));
@@ -103,11 +110,12 @@ HistoryEntry History::numbered(HistoryEntry entry) const {
 }
 
 Result<void> History::write(const HistoryEntry& entry) const {
+  if (unlisted_) return *unlisted_;
   std::error_code error;
   std::filesystem::create_directories(folder_, error);
   if (auto written = replace_file(folder_ / (entry.id + ".json"), to_json(entry, true)); !written)
     return written;
-  const auto present = files();
+  const auto present = listing().files;
   for (std::size_t i = kKept; i < present.size(); ++i) std::filesystem::remove(present[i], error);
   return {};
 }

@@ -40,14 +40,14 @@ class History {
  public:
   static constexpr std::size_t kKept = writeback::settings::kKeptEntries;
 
-  /// Reads what is there; entries that cannot be read are left out, see unreadable().
+  /// Reads what is there; entries that cannot be read are left out, see unreadable() and unlisted().
   /// @param folder of the state directory; made on the first entry
   explicit History(std::filesystem::path folder);
 
   /// The entry with the id that it gets.
   [[nodiscard]] HistoryEntry numbered(HistoryEntry entry) const;
   /// Puts a numbered entry on the disk and removes the oldest ones beyond kKept there. Changes nothing else:
-  /// may run beside the loop. Error: io.
+  /// may run beside the loop. Error: io, also where entries may be there that it would write over.
   [[nodiscard]] Result<void> write(const HistoryEntry& entry) const;
   /// Takes over a numbered entry, in the place of one with the same id.
   void keep(HistoryEntry entry);
@@ -58,15 +58,22 @@ class History {
   [[nodiscard]] const std::vector<HistoryEntry>& entries() const { return entries_; }
   /// Files that are there and hold no entry that can be read, newest first.
   [[nodiscard]] const std::vector<std::filesystem::path>& unreadable() const { return unreadable_; }
+  /// Why nobody knows which entries are there; nullopt: it is known.
+  [[nodiscard]] const std::optional<Error>& unlisted() const { return unlisted_; }
   [[nodiscard]] std::optional<HistoryEntry> find(const std::string& id) const;
   [[nodiscard]] std::optional<HistoryEntry> newest_committed() const;
 
  private:
-  [[nodiscard]] std::vector<std::filesystem::path> files() const;
+  struct Listing {
+    std::vector<std::filesystem::path> files;  ///< newest first
+    std::optional<Error> error;                ///< of a folder that is there; `files` may be a part of it
+  };
+  [[nodiscard]] Listing listing() const;
 
   std::filesystem::path folder_;
   std::vector<HistoryEntry> entries_;
   std::vector<std::filesystem::path> unreadable_;
+  std::optional<Error> unlisted_;
   unsigned newest_ = 0;  // number, also of an entry that cannot be read
 };
 

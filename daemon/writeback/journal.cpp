@@ -6,10 +6,12 @@
 #include <zlib.h>
 
 #include <array>
+#include <cctype>
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
 #include <nlohmann/json.hpp>
+#include <string_view>
 #include <utility>
 
 #include "proto/file_bytes.hpp"
@@ -51,12 +53,37 @@ bool is_end(JournalState state) {
          state == JournalState::needs_operator;
 }
 
-/// @param visit called with each good record. @return how many bytes the lines have
+constexpr std::size_t kCrcDigits = 8;
+
+/// Whether a power cut may leave this of a record: its beginning, or zeros where a part of it did not reach
+/// the disk, in the space that was reserved for it.
+bool may_be_torn(std::string_view rest) {
+  if (rest.size() > Journal::kReserved) return false;
+  const auto fits = [](std::size_t at, char found) {
+    if (found == '\0') return true;
+    if (at < kCrcDigits) return std::isxdigit(static_cast<unsigned char>(found)) != 0;
+    return found == (at == kCrcDigits ? ' ' : '{');
+  };
+  for (std::size_t at = 0; at < rest.size() && at < kCrcDigits + 2; ++at)
+    if (!fits(at, rest[at])) return false;
+  return true;
+}
+
+/// @param visit called with each good record. @param damage what else there is. @return how many bytes the
+/// lines have
 template <typename Visit>
-std::size_t visit_lines(const std::string& bytes, Visit visit) {
-  std::size_t good = 0;
-  for (std::size_t end = 0; (end = bytes.find('\n', good)) != std::string::npos; good = end + 1)
-    if (auto record = from_line(bytes.substr(good, end - good))) visit(std::move(*record));
+std::size_t visit_lines(const std::string& bytes, Visit visit, JournalDamage& damage) {
+  std::size_t good = 0, line = 1;
+  for (std::size_t end = 0; (end = bytes.find('\n', good)) != std::string::npos; good = end + 1, ++line) {
+    if (auto record = from_line(bytes.substr(good, end - good))) {
+      visit(std::move(*record));
+    } else {
+      ++damage.lines;
+      damage.last_line = line;
+    }
+  }
+  const auto rest = std::string_view(bytes).substr(good);
+  if (!may_be_torn(rest)) damage.bytes = rest.size();
   return good;
 }
 
@@ -84,11 +111,12 @@ std::string to_line(const JournalRecord& record) {
 }
 
 std::optional<JournalRecord> from_line(const std::string& line) {
-  constexpr std::size_t kCrc = 8;
-  if (line.size() <= kCrc || line[kCrc] != ' ' || crc_of(line.substr(kCrc + 1)) != line.substr(0, kCrc))
+  constexpr std::size_t kBody = kCrcDigits + 1;
+  if (line.size() < kBody || line[kCrcDigits] != ' ' ||
+      crc_of(line.substr(kBody)) != line.substr(0, kCrcDigits))
     return std::nullopt;
   try {
-    const json body = json::parse(line.substr(kCrc + 1));
+    const json body = json::parse(line.substr(kBody));
     const auto state = state_named(body.at("state").get<std::string>());
     const bool whole = body.at("seq").is_number_unsigned() && body.at("wall_us").is_number_integer();
     if (!state || !whole) return std::nullopt;
@@ -109,6 +137,20 @@ std::optional<JournalRecord> from_line(const std::string& line) {
   }
 }
 
+std::string to_text(const JournalDamage& damage) {
+  constexpr const char* kLookAt =
+      "; what was written last may be missing: compare odomcalibctl history with odomcalibctl params get";
+  if (damage.unreadable) return damage.unreadable->text() + kLookAt;
+  std::string what;
+  if (damage.lines == 1) what = fmt::format("line {} cannot be read", damage.last_line);
+  if (damage.lines > 1)
+    what = fmt::format("{} lines cannot be read, the last is line {}", damage.lines, damage.last_line);
+  if (damage.bytes > 0)
+    what += fmt::format("{}{} bytes behind the last line are no record", what.empty() ? "" : ", and ",
+                        damage.bytes);
+  return damage.file.string() + ": " + what + kLookAt;
+}
+
 Journal::~Journal() {
   if (fd_ >= 0) close(fd_);
 }
@@ -119,7 +161,8 @@ Journal::Journal(Journal&& other) noexcept
       size_(other.size_),
       uncut_(other.uncut_),
       last_(std::move(other.last_)),
-      ends_(std::move(other.ends_)) {}
+      ends_(std::move(other.ends_)),
+      damage_(std::move(other.damage_)) {}
 
 Result<Journal> Journal::open(const std::filesystem::path& path) {
   std::error_code ignored;
@@ -151,10 +194,21 @@ Result<std::size_t> Journal::read_lines() {
     if (is_end(record.state)) ends_.push_back(record);
     last_ = std::move(record);
   };
-  if (const auto older = read_file_bytes(older_file(path_))) visit_lines(older.value(), note);
+  const auto visit = [&](const std::filesystem::path& file, const std::string& bytes) {
+    JournalDamage damage{.file = file};
+    const std::size_t size = visit_lines(bytes, note, damage);
+    if (damage.lines > 0 || damage.bytes > 0) damage_.push_back(std::move(damage));
+    return size;
+  };
+  const auto older = older_file(path_);
+  std::error_code unknown;
+  if (const auto bytes = read_file_bytes(older))
+    visit(older, bytes.value());
+  else if (std::filesystem::symlink_status(older, unknown).type() != std::filesystem::file_type::not_found)
+    damage_.push_back({.file = older, .unreadable = bytes.error()});
   const auto bytes = read_file_bytes(path_);
   if (!bytes) return bytes.error();
-  size_ = visit_lines(bytes.value(), note);
+  size_ = visit(path_, bytes.value());
   return bytes.value().size();
 }
 

@@ -52,6 +52,18 @@ std::string to_line(const JournalRecord& record);
 /// nullopt: torn or damaged.
 std::optional<JournalRecord> from_line(const std::string& line);
 
+/// Content of one file of the journal that is no record.
+struct JournalDamage {
+  std::filesystem::path file;
+  std::size_t lines = 0;      ///< that hold no record
+  std::size_t last_line = 0;  ///< number of the last of them, from 1
+  std::size_t bytes = 0;  ///< behind the last line, where they are more than a power cut leaves of a record
+  std::optional<Error> unreadable = {};  ///< the whole file, which is there
+};
+
+/// Says what of the journal is passed over, and what to look at.
+std::string to_text(const JournalDamage& damage);
+
 /// The record when its write-back was not brought to an end.
 std::optional<JournalRecord> unfinished_of(const std::optional<JournalRecord>& last);
 
@@ -79,6 +91,9 @@ class Journal {
   /// How the write-backs ended that were there when it was opened, in this file and the one before it, oldest
   /// first: what the history is made of where an entry is missing.
   [[nodiscard]] const std::vector<JournalRecord>& ends() const { return ends_; }
+  /// Damage that was passed over when it was opened, in this file and the one before it; a file without
+  /// damage has no entry.
+  [[nodiscard]] const std::vector<JournalDamage>& damage() const { return damage_; }
 
  private:
   Journal(std::filesystem::path path, int fd) : path_(std::move(path)), fd_(fd) {}
@@ -94,6 +109,7 @@ class Journal {
   bool uncut_ = false;       // a record that failed may still be behind them
   std::optional<JournalRecord> last_;
   std::vector<JournalRecord> ends_;
+  std::vector<JournalDamage> damage_;
 };
 
 }  // namespace odomcalib

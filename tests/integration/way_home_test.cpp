@@ -117,6 +117,49 @@ TEST_F(WayHome, names_what_it_passes_over_because_it_cannot_be_read) {
   EXPECT_EQ(events_.find("0001.json"), std::string::npos) << events_;
 }
 
+TEST_F(WayHome, rollback_tells_an_entry_that_cannot_be_read_from_one_that_was_never_committed) {
+  EXPECT_NE(call("Rollback").parameters.find("no write-back was committed\""), std::string::npos);
+  std::filesystem::create_directories(folder_ / "state" / "history");
+  std::ofstream(folder_ / "state" / "history" / "0007.json") << "{";
+  restart();
+  auto reply = call("Rollback").parameters;
+  EXPECT_NE(reply.find("no write-back that can be read was committed, and 1 cannot"), std::string::npos)
+      << reply;
+  reply = call("Rollback", {{"id", "0007"}}).parameters;
+  EXPECT_NE(reply.find("0007.json"), std::string::npos) << reply;
+  reply = call("Rollback", {{"id", "0006"}}).parameters;
+  EXPECT_NE(reply.find("that was committed"), std::string::npos) << reply;
+}
+
+TEST_F(WayHome, a_history_that_cannot_be_listed_is_told_and_not_taken_for_an_empty_one) {
+  end_service();
+  std::filesystem::remove_all(folder_ / "state" / "history");
+  std::ofstream(folder_ / "state" / "history") << "no folder";
+  start_service();
+  ASSERT_TRUE(run_until([this] { return ready(); }, 20.0));
+  EXPECT_NE(
+      events_.find("history: " + (folder_ / "state" / "history").string() + ": cannot read the history: "),
+      std::string::npos)
+      << events_;
+  for (const auto& reply : {call("History"), call("Rollback"), call("Rollback", {{"id", "0001"}})})
+    EXPECT_NE(reply.parameters.find("cannot read the history: "), std::string::npos) << reply.parameters;
+}
+
+TEST_F(WayHome, damage_of_the_journal_is_told_at_the_start) {
+  ASSERT_EQ(set_track(0.41).error, "");
+  end_service();
+  std::ofstream(folder_ / "state" / "journal", std::ios::app) << "damaged\nabc";
+  start_service();
+  ASSERT_TRUE(run_until([this] { return ready(); }, 20.0));
+  EXPECT_NE(events_.find("journal: " + (folder_ / "state" / "journal").string() + ": line "),
+            std::string::npos)
+      << events_;
+  events_.clear();
+  std::filesystem::remove(folder_ / "state" / "journal");
+  restart();
+  EXPECT_EQ(events_.find("journal:"), std::string::npos) << events_;
+}
+
 // 20 % off is what a drive of another robot may hold: it is put right in one step.
 TEST_F(WayHome, a_replaced_drive_is_put_right_in_one_step) {
   robot_->node().dictionary().set({0x2100, 3}, 480000);

@@ -35,8 +35,11 @@ Reading get_history(Context& context, const Call& call) {
   CallParameters given(call.parameters);
   const int limit = given.whole("limit", std::numeric_limits<int>::max());
   if (given.wrong() || limit < 0) return WrongParameter{"limit"};
+  const History& history = context.parts.write_back.history;
+  // An empty list would say that nothing was ever written.
+  if (history.unlisted() && history.entries().empty()) return *history.unlisted();
   ordered_json list = ordered_json::array();
-  for (const auto& entry : context.parts.write_back.history.entries())
+  for (const auto& entry : history.entries())
     if (list.size() < static_cast<std::size_t>(limit))
       list.push_back(ordered_json::parse(to_json(entry, false)));
   return Answer{

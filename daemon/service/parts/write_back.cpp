@@ -200,8 +200,19 @@ FormerValues values_at(const WayBack& way, const Stage& stage,
   return former;
 }
 
-Error no_entry(const std::string& id) {
-  return {ErrorCode::usage, "no history entry \"" + id + "\" that was committed", "", "odomcalibctl history"};
+/// @param id empty: of any
+Error no_entry(const History& history, const std::string& id) {
+  constexpr const char* kSee = "odomcalibctl history";
+  if (history.unlisted() && !history.find(id)) return *history.unlisted();
+  const auto& damaged = history.unreadable();
+  const auto own = std::ranges::find_if(damaged, [&](const auto& file) { return file.stem() == id; });
+  if (own != damaged.end())
+    return {ErrorCode::usage, "history entry \"" + id + "\" cannot be read", own->string(), kSee};
+  if (!id.empty()) return {ErrorCode::usage, "no history entry \"" + id + "\" that was committed", "", kSee};
+  if (damaged.empty()) return {ErrorCode::usage, "no write-back was committed", "", kSee};
+  return {ErrorCode::usage,
+          fmt::format("no write-back that can be read was committed, and {} cannot", damaged.size()),
+          damaged.front().parent_path().string(), kSee};
 }
 
 }  // namespace
@@ -225,9 +236,7 @@ Result<FormerValues> WriteBack::former_values(const WayWanted& wanted, const std
   if (named.empty() && interrupted && !interrupted->before.empty() && !wanted.replaced)
     return before_interrupted(*interrupted, device, in_force);
   const auto found = named.empty() ? history.newest_committed() : history.find(named);
-  if (!found && named.empty())
-    return Error{ErrorCode::usage, "no write-back was committed", "", "odomcalibctl history"};
-  if (!found || found->outcome != name_of(WriteOutcome::committed)) return no_entry(named);
+  if (!found || found->outcome != name_of(WriteOutcome::committed)) return no_entry(history, named);
   const bool foreign = of_another(*found, device);
   const WayBack way(history.entries(), foreign ? found->device : device);
   if (foreign && !wanted.replaced) return of_another_controller(*found, device, way);

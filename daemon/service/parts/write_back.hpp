@@ -87,6 +87,7 @@ class WriteBack {
   /// Id of the calibration in the newest record of the journal.
   [[nodiscard]] std::string journaled_calibration() const;
   [[nodiscard]] const std::vector<JournalRecord>& journal_ends() const { return journal_.ends(); }
+  [[nodiscard]] const std::vector<JournalDamage>& journal_damage() const { return journal_.damage(); }
   [[nodiscard]] std::optional<WriteEnd> take_end() { return std::exchange(ended, std::nullopt); }
 
   Transaction transaction;

@@ -218,6 +218,83 @@ TEST(Journal, a_torn_record_in_the_reserved_space_is_written_over) {
       (std::pair{std::vector{JournalState::begin, JournalState::rollback, JournalState::rolled_back}, true}));
 }
 
+void write_text(const std::filesystem::path& path, const std::string& text) {
+  std::ofstream(path, std::ios::binary) << text;
+}
+
+TEST(Journal, counts_the_lines_that_it_cannot_read) {
+  const TemporaryFolder folder;
+  const auto path = folder / "journal";
+  const std::string good = to_line(record_of(JournalState::begin));
+  std::string flipped = good;
+  flipped[20] = static_cast<char>(flipped[20] ^ 1);
+  write_text(path.string() + ".1", flipped);
+  write_text(path, good + flipped + good + checked(R"({"seq":1,"state":"of_tomorrow"})") + "\n\n" +
+                       to_line(record_of(JournalState::commit)));
+  for (const bool reading_only : {true, false}) {
+    const auto journal = value_of(reading_only ? Journal::open_read_only(path) : Journal::open(path));
+    EXPECT_EQ(journal.last()->state, JournalState::commit);
+    ASSERT_EQ(journal.damage().size(), 2U);
+    EXPECT_EQ(journal.damage()[0].lines, 1U);
+    EXPECT_EQ(journal.damage()[0].last_line, 1U);
+    EXPECT_EQ(journal.damage()[1].lines, 3U);
+    EXPECT_EQ(journal.damage()[1].last_line, 5U);
+    EXPECT_EQ(journal.damage()[1].bytes, 0U);
+    EXPECT_EQ(to_text(journal.damage()[0]).find(path.string() + ".1: line 1 cannot be read; "), 0U);
+    EXPECT_EQ(
+        to_text(journal.damage()[1]).find(path.string() + ": 3 lines cannot be read, the last is line 5; "),
+        0U);
+  }
+}
+
+// A record that was being written when the power failed is no damage, wherever it is cut off.
+TEST(Journal, a_torn_end_is_no_damage) {
+  const TemporaryFolder folder;
+  const auto path = folder / "journal";
+  const std::string good = to_line(record_of(JournalState::begin));
+  for (std::size_t kept = 0; kept < good.size(); ++kept) {
+    const std::string zeros(Journal::kReserved - kept, '\0');
+    for (const std::string& rest : {good.substr(0, kept), good.substr(0, kept) + zeros,
+                                    std::string(kept, '\0') + good.substr(kept, good.size() - kept - 1)}) {
+      write_text(path, good + rest);
+      const auto journal = value_of(Journal::open_read_only(path));
+      ASSERT_TRUE(journal.damage().empty()) << kept << " " << to_text(journal.damage().front());
+    }
+  }
+}
+
+TEST(Journal, says_how_many_bytes_behind_its_lines_are_no_record) {
+  const TemporaryFolder folder;
+  const auto path = folder / "journal";
+  const std::string good = to_line(record_of(JournalState::commit));
+  for (const std::string& rest : {std::string(3000, 'x'), std::string("[robot]"), good.substr(0, 8) + "{",
+                                  good.substr(0, 9) + "[", std::string(Journal::kReserved + 1, '\0')}) {
+    for (const std::string& lines : {std::string(), good}) {
+      write_text(path, lines + rest);
+      const auto journal = value_of(Journal::open(path));
+      ASSERT_EQ(journal.damage().size(), 1U);
+      EXPECT_EQ(journal.damage()[0].lines, 0U);
+      EXPECT_EQ(journal.damage()[0].bytes, rest.size());
+      EXPECT_EQ(to_text(journal.damage()[0])
+                    .find(path.string() + ": " + std::to_string(rest.size()) +
+                          " bytes behind the last line are no record; "),
+                0U)
+          << to_text(journal.damage()[0]);
+      EXPECT_EQ(std::filesystem::file_size(path), lines.size());
+    }
+  }
+}
+
+TEST(Journal, says_that_the_file_before_it_cannot_be_read) {
+  const TemporaryFolder folder;
+  const auto path = folder / "journal";
+  EXPECT_TRUE(value_of(Journal::open(path)).damage().empty()) << "there is none";
+  std::filesystem::create_directory(path.string() + ".1");
+  const auto journal = value_of(Journal::open(path));
+  ASSERT_EQ(journal.damage().size(), 1U);
+  EXPECT_NE(to_text(journal.damage()[0]).find("journal.1: is a folder; "), std::string::npos);
+}
+
 TEST(Journal, is_rotated_between_write_backs_and_never_within_one) {
   const TemporaryFolder folder;
   const auto path = folder / "journal";
@@ -398,6 +475,21 @@ TEST(History, names_the_files_that_it_cannot_read) {
   of_the_journal.id = "0002";
   history.keep(of_the_journal);
   EXPECT_TRUE(history.unreadable().empty()) << "it was made again";
+}
+
+// An empty history would give the next entry the number of one that is there.
+TEST(History, that_cannot_be_listed_is_not_an_empty_one) {
+  const TemporaryFolder folder;
+  const auto path = folder / "history";
+  EXPECT_FALSE(History(path).unlisted()) << "it is made on the first entry";
+  std::filesystem::create_symlink(path, path);
+  const History history(path);
+  ASSERT_TRUE(history.unlisted());
+  EXPECT_EQ(history.unlisted()->where, path.string());
+  EXPECT_NE(history.unlisted()->what.find("cannot read the history: Too many levels"), std::string::npos);
+  std::filesystem::remove(path);
+  EXPECT_FALSE(history.write(history.numbered({})).ok());
+  EXPECT_FALSE(std::filesystem::exists(path));
 }
 
 class FullHistory : public testing::Test {
