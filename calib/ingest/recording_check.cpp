@@ -46,6 +46,11 @@ std::optional<Error> missing_stream(const Recording& recording) {
                  "fewer than two samples of " + std::string(many_of(motion)) +
                      what_was_dropped(recording, name_of(motion)),
                  recording.name, "check that the motion of the wheels was recorded"};
+  if (recording.poses.size() == 1 && recording.scans.size() > 1)
+    return Error{ErrorCode::empty,
+                 "a single reference pose" + what_was_dropped(recording, "pose") + "; it replaces " +
+                     std::to_string(recording.scans.size()) + " scans",
+                 recording.name, "record more poses, or leave it out to use the scans"};
   if ((recording.poses.empty() ? recording.scans.size() : recording.poses.size()) < 2)
     return Error{ErrorCode::empty, "neither scans nor reference poses" + what_was_dropped(recording, "scan"),
                  recording.name, "check that the lidar was recorded"};

@@ -28,4 +28,7 @@ std::optional<Recording> without_repeated_poses(const Recording& recording);
 /// nothing where both agree.
 std::optional<Recording> with_whole_turns(const Recording& recording);
 
+/// The same, with word_on_unused_scans() among its repairs; nothing where there is none.
+std::optional<Recording> with_unused_scans_told(const Recording& recording);
+
 }  // namespace odomcalib::calib::ingest

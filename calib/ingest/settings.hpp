@@ -118,6 +118,10 @@ inline constexpr std::size_t kPhantomBeside = 5;
 /// Share of the largest distance from the first pose, from one pose that is looked at to the next. Chosen:
 /// noise of a reference is small against it whatever unit lengths are in.
 inline constexpr double kPoseStep = 0.01;
+/// Share of the time with scans that poses have to cover, which replace them; of less it is said. Chosen: a
+/// recorder starts one of them a little later, and a reference loses sight for a moment; what a robot drives
+/// in a fifth of the time may be what a parameter needs.
+inline constexpr double kPosesCover = 0.8;
 /// Steps that a judgement takes. Chosen, untried.
 inline constexpr std::size_t kFewestPoseSteps = 30;
 /// Share of the way that goes sideways: of poses that may contradict their heading, and of those that follow

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
+#include "calib/ingest/put_right.hpp"
 #include "daemon/cli/display.hpp"
 #include "daemon/cli/inspection.hpp"
 #include "daemon/cli/left_out_lines.hpp"
@@ -100,6 +101,7 @@ Section taken_section(const Inspection& found) {
   for (const Repair& one : found.recording->repairs)
     section.lines.push_back(fmt::format("put right: {}: {}: {}", one.what, one.chosen, one.reason));
   for (const std::string& line : evidence_lines(*found.recording)) section.lines.push_back(line);
+  if (const auto word = calib::ingest::word_on_unused_scans(*found.recording)) section.lines.push_back(*word);
   if (!found.recording->robot.lidar_pose && found.recording->poses.empty() && found.scans)
     section.lines.emplace_back("nobody states the pose of the lidar: it is estimated from zero on");
   return section;

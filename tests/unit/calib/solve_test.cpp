@@ -95,6 +95,19 @@ TEST(Solve, S1_14_a_corridor_is_refused_as_a_place_that_scans_cannot_tell) {
       << result.reasons[0];
 }
 
+TEST(Solve, says_in_a_refusal_that_poses_have_replaced_the_scans) {
+  Recording recording;
+  recording.robot = {0.15, 0.15, 0.4, 4096.0, std::nullopt, "", ""};
+  for (int k = 0; k < 300; ++k) recording.ticks.push_back({0.02 * k, 9 * k, 9 * k, 0});
+  for (int k = 0; k < 8; ++k) recording.poses.push_back({0.1 * k, 0.01 * k, 0.0, 0.0});
+  recording.scans.resize(60);
+  for (std::size_t k = 0; k < 60; ++k) recording.scans[k].t = 0.1 * static_cast<double>(k);
+  const Calibration result = solve({&recording, 1}, {});
+  EXPECT_EQ(result.verdict, Verdict::refused);
+  ASSERT_EQ(result.repairs.size(), 1U);
+  EXPECT_EQ(result.repairs[0].reason.find("60 scans are not used: the poses are the reference"), 0U);
+}
+
 TEST(Solve, an_unknown_effect_is_refused_by_name) {
   Recording recording;
   recording.robot = {0.15, 0.15, 0.4, 4096.0, std::nullopt, "", ""};

@@ -49,6 +49,12 @@ const std::vector<Mistake> kMistakes = {
      [](Recording& r) {
        r.poses = {{0.0, 0.0, 0.0, 0.0}};
      },
+     ErrorCode::empty, "a single reference pose; it replaces 100 scans", "leave it out to use the scans"},
+    {"one_pose_alone",
+     [](Recording& r) {
+       r.poses = {{0.0, 0.0, 0.0, 0.0}};
+       r.scans.clear();
+     },
      ErrorCode::empty, "neither scans nor reference poses", ""},
     {"no_unit", [](Recording& r) { r.robot.ticks_per_rev = 0.0; }, ErrorCode::missing_units, "ticks_per_rev",
      "robot line"},

@@ -5,6 +5,7 @@
 
 #include <vector>
 
+#include "calib/ingest/put_right.hpp"
 #include "calib/ingest/stamp_check.hpp"
 
 namespace odomcalib::calib::ingest::reference_faults_test {
@@ -74,6 +75,44 @@ TEST(RepeatedPoses, are_left_out_up_to_three_in_a_row) {
   }
   EXPECT_FALSE(without_repeated_poses(sent_again(10, 4))) << "the robot stands";
   EXPECT_FALSE(without_repeated_poses(sent_again(0, 2))) << "nothing shows that it moved before";
+}
+
+/// Scans and poses every 0.1 s; the poses begin and end somewhere between.
+Recording with_poses(int scans, int poses) {
+  Recording recording;
+  recording.scans.resize(static_cast<std::size_t>(scans));
+  for (int k = 0; k < scans; ++k) recording.scans[static_cast<std::size_t>(k)].t = 0.1 * k;
+  for (int k = 0; k < poses; ++k) recording.poses.push_back({0.1 * k, 0.01 * k, 0.0, 0.0});
+  return recording;
+}
+
+TEST(UnusedScans, are_told_where_poses_cover_less_of_the_drive) {
+  const auto told = with_unused_scans_told(with_poses(60, 8));
+  ASSERT_TRUE(told);
+  ASSERT_EQ(told->repairs.size(), 1U);
+  EXPECT_EQ(told->repairs[0].chosen, "8 poses");
+  EXPECT_EQ(told->repairs[0].reason,
+            "60 scans are not used: the poses are the reference, and cover 0.7 of 5.9 s");
+  EXPECT_EQ(told->scans.size(), 60U);
+  const Recording given = with_poses(60, 1);
+  EXPECT_EQ(put_right({&given, 1})[0].repairs.size(), 1U) << "a single one covers nothing";
+}
+
+TEST(UnusedScans, are_not_told_where_nothing_is_lost_with_them) {
+  EXPECT_TRUE(word_on_unused_scans(with_poses(101, 80)));
+  EXPECT_FALSE(word_on_unused_scans(with_poses(101, 82))) << "80 % of the time and more";
+  EXPECT_FALSE(word_on_unused_scans(with_poses(101, 500)));
+  EXPECT_FALSE(word_on_unused_scans(with_poses(60, 0))) << "the scans are the reference";
+  EXPECT_FALSE(word_on_unused_scans(with_poses(0, 8)));
+  EXPECT_FALSE(word_on_unused_scans(with_poses(1, 8))) << "one scan shows no motion";
+}
+
+TEST(UnusedScans, are_told_where_the_poses_pause) {
+  Recording recording = with_poses(101, 101);
+  std::erase_if(recording.poses, [](const PoseSample& pose) { return pose.t > 2.05 && pose.t < 7.95; });
+  const auto word = word_on_unused_scans(recording);
+  ASSERT_TRUE(word);
+  EXPECT_NE(word->find("cover 4.0 of 10.0 s"), std::string::npos) << *word;
 }
 
 /// Poses every 0.1 s from `before` on, and from `after` on.
