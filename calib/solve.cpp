@@ -6,6 +6,7 @@
 #include "calib/estimation/first_look.hpp"
 #include "calib/estimation/fit.hpp"
 #include "calib/estimation/start_values.hpp"
+#include "calib/ingest/one_sensor.hpp"
 #include "calib/ingest/phantom_return.hpp"
 #include "calib/ingest/put_right.hpp"
 #include "calib/ingest/recordings.hpp"
@@ -38,6 +39,7 @@ selection::SearchResult select_terms(const estimation::Fit& fit, bool is_wanted,
 /// from where the counts say they are.
 std::optional<Error> contradiction(const ingest::Recordings& recordings, bool same_robot) {
   if (auto error = ingest::two_robots(recordings.view(), same_robot)) return error;
+  if (auto error = ingest::two_sensors(recordings.view())) return error;
   for (const Recording& recording : recordings.view())
     if (auto error = estimation::counts_without_direction(recording)) return error;
   return std::nullopt;

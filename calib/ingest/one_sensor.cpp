@@ -1,3 +1,5 @@
+#include "calib/ingest/one_sensor.hpp"
+
 #include <algorithm>
 #include <map>
 #include <vector>
@@ -28,7 +30,41 @@ std::string most_of(const std::map<std::string, std::size_t>& counts) {
       ->first;
 }
 
+/// Poses and increments replace scans.
+bool is_by_scans(const Recording& recording) {
+  return recording.poses.empty() && recording.increments.empty() && !recording.scans.empty();
+}
+
 }  // namespace
+
+std::optional<Error> lacks_sensor(std::span<const Recording> recordings, const std::string& sensor) {
+  if (sensor.empty()) return std::nullopt;
+  for (const Recording& recording : recordings) {
+    const auto counts = scans_by_sensor(recording);
+    const bool is_unnamed = counts.size() == 1 && counts.contains("");
+    if (!is_by_scans(recording) || counts.contains(sensor) || is_unnamed) continue;
+    return Error{ErrorCode::usage,
+                 "has no scans of the sensor \"" + sensor + "\", but of: " + list_of(counts), recording.name,
+                 "leave it out, or solve its sensor separately: each has a mounting of its own"};
+  }
+  return std::nullopt;
+}
+
+std::optional<Error> two_sensors(std::span<const Recording> recordings) {
+  const Recording* known = nullptr;
+  for (const Recording& recording : recordings) {
+    if (!is_by_scans(recording) || recording.scans.front().sensor.empty()) continue;
+    if (known == nullptr) known = &recording;
+    const std::string &one = known->scans.front().sensor, &other = recording.scans.front().sensor;
+    if (other == one) continue;
+    return Error{
+        ErrorCode::refused,
+        "its scans are of the sensor \"" + other + "\", but those of " + known->name + " of \"" + one + "\"",
+        recording.name,
+        "name the sensor that all recordings have with --sensor, or solve those of each separately"};
+  }
+  return std::nullopt;
+}
 
 std::optional<Recording> of_one_sensor(const Recording& recording, const std::string& sensor) {
   const auto counts = scans_by_sensor(recording);

@@ -7,6 +7,7 @@
 #include <memory>
 #include <set>
 
+#include "calib/ingest/one_sensor.hpp"
 #include "calib/solve.hpp"
 #include "calib/terms/request.hpp"
 #include "daemon/cli/calibration_summary.hpp"
@@ -75,7 +76,7 @@ std::optional<Error> wrong_sensor(const SolveArguments& options, const std::vect
   for (const Recording& recording : recordings)
     for (const Scan& scan : recording.scans)
       if (!scan.sensor.empty()) sensors.insert(scan.sensor);
-  if (sensors.contains(options.sensor)) return std::nullopt;
+  if (sensors.contains(options.sensor)) return calib::ingest::lacks_sensor(recordings, options.sensor);
   return Error{ErrorCode::usage, "no scan is of the sensor \"" + options.sensor + "\"", "--sensor",
                sensors.empty() ? "leave it out: the scans name no sensor"
                                : fmt::format("there are: {}", fmt::join(sensors, ", "))};

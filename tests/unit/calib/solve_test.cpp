@@ -108,6 +108,27 @@ TEST(Solve, says_in_a_refusal_that_poses_have_replaced_the_scans) {
   EXPECT_EQ(result.repairs[0].reason.find("60 scans are not used: the poses are the reference"), 0U);
 }
 
+TEST(Solve, recordings_of_two_lidars_are_refused) {
+  std::array<Recording, 2> recordings;
+  for (Recording& recording : recordings) {
+    recording.name = &recording == recordings.data() ? "drive1" : "drive2";
+    recording.robot = {0.15, 0.15, 0.4, 4096.0, std::nullopt, "", ""};
+    for (int k = 0; k < 300; ++k) recording.ticks.push_back({0.02 * k, 9 * k, 9 * k, 0});
+    for (unsigned k = 0; k < 60; ++k) {
+      recording.scans.push_back(odomcalib::test_support::scan_from(odomcalib::test_support::kRoom,
+                                                                   {0.01 * k, 0.0, 0.0}, 0.01, k, 360));
+      recording.scans.back().t = 0.1 * k;
+      recording.scans.back().sensor = recording.name == "drive1" ? "front" : "rear";
+    }
+  }
+  const Calibration result = solve(recordings, {});
+  EXPECT_EQ(result.verdict, Verdict::refused);
+  ASSERT_FALSE(result.reasons.empty());
+  EXPECT_NE(result.reasons[0].find("its scans are of the sensor \"rear\", but those of drive1 of \"front\""),
+            std::string::npos)
+      << result.reasons[0];
+}
+
 TEST(Solve, an_unknown_effect_is_refused_by_name) {
   Recording recording;
   recording.robot = {0.15, 0.15, 0.4, 4096.0, std::nullopt, "", ""};

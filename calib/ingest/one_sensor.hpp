@@ -1,0 +1,21 @@
+// One lidar: recordings that are solved together share its mounting.
+#pragma once
+
+#include <optional>
+#include <span>
+#include <string>
+
+#include "proto/recording/recording.hpp"
+
+namespace odomcalib::calib::ingest {
+
+/// A recording whose scans are of other sensors than the one that was asked for; nullopt where each has some
+/// of it, names no sensor, or has another reference than scans. Error: usage.
+/// @param sensor empty: none was asked for
+std::optional<Error> lacks_sensor(std::span<const Recording> recordings, const std::string& sensor);
+
+/// Recordings of one lidar each (see put_right()) that are of two; nullopt where those that name it name the
+/// same. Error: refused.
+std::optional<Error> two_sensors(std::span<const Recording> recordings);
+
+}  // namespace odomcalib::calib::ingest
