@@ -17,7 +17,7 @@ constexpr double kNoNumber = std::numeric_limits<double>::quiet_NaN();
 constexpr double kAssumedInterval = 0.2;  // s between scans of a log without time stamps
 constexpr std::size_t kMostCarmenBeams = 100'000;
 constexpr double kFarthest = 1e4;  // m
-constexpr std::string_view kOdometry = "ODOM";
+constexpr std::string_view kOdomLine = "ODOM";
 
 /// The words of one line; a word that is missing or no number reads as NaN.
 class Words {
@@ -177,7 +177,7 @@ std::string not_taken(std::string_view name) { return std::string(name) + " was 
 
 /// Whether the message that was just read lacks its stamp.
 bool is_without_stamp(std::string_view name, const Log& log) {
-  if (name == kOdometry) return !is_stamped(log.odometry.back().t);
+  if (name == kOdomLine) return !is_stamped(log.odometry.back().t);
   return (name == "FLASER" || name == "ROBOTLASER1") && !is_stamped(log.scans.back().t);
 }
 
@@ -189,7 +189,7 @@ void read_carmen_line(std::string_view line, bool last, Log& log, RecordingBuild
     good = read_flaser(words, log);
   else if (name == "ROBOTLASER1")
     good = read_robotlaser(words, log);
-  else if (name == kOdometry)
+  else if (name == kOdomLine)
     good = read_odometry(words, log);
   else if (is_other_line(name))
     builder.discard("message", not_taken(name));
@@ -216,7 +216,7 @@ bool has_times(const Log& log) {
 void drop_open_end(Log& log, RecordingBuilder& builder) {
   if (log.open_end.empty()) return;
   builder.discard("line", "cut off");
-  if (log.open_end == kOdometry) return log.odometry.pop_back();
+  if (log.open_end == kOdomLine) return log.odometry.pop_back();
   log.scans.pop_back();
   log.scan_odometry.pop_back();
 }
@@ -224,7 +224,7 @@ void drop_open_end(Log& log, RecordingBuilder& builder) {
 /// Some logs were converted without their stamps: a made-up clock keeps them usable, and is reported.
 void assume_times(Log& log, RecordingBuilder& builder) {
   builder.discard("time stamp", "the log has none: 0.2 s per scan assumed", log.scans.size());
-  builder.discard("message", not_taken(kOdometry) + ": the scans have no time stamps", log.odometry.size());
+  builder.discard("message", not_taken(kOdomLine) + ": the scans have no time stamps", log.odometry.size());
   log.odometry.clear();
   for (std::size_t i = 0; i < log.scans.size(); ++i)
     log.scans[i].t = log.scan_odometry[i].t = kAssumedInterval * static_cast<double>(i);
@@ -277,7 +277,7 @@ void add_counts(const Log& log, const RobotDescription& robot, RecordingBuilder&
   const auto stamped = std::count_if(log.odometry.begin(), log.odometry.end(),
                                      [](const Odometry& one) { return is_stamped(one.t); });
   if (stamped < 2)
-    builder.discard("message", not_taken(kOdometry) + ": fewer than two have a time stamp",
+    builder.discard("message", not_taken(kOdomLine) + ": fewer than two have a time stamp",
                     log.odometry.size());
   const auto& odometry = stamped < 2 ? log.scan_odometry : log.odometry;
   for (const auto& sample : odometry) builder.add_ticks(counts.at(sample));
@@ -290,7 +290,7 @@ bool looks_like_carmen(std::string_view text) {
     const std::size_t end = text.find('\n');
     Words words(text.substr(0, end));
     const auto name = words.word();
-    if (name == "FLASER" || name == "ROBOTLASER1" || name == kOdometry || name == "PARAM") return true;
+    if (name == "FLASER" || name == "ROBOTLASER1" || name == kOdomLine || name == "PARAM") return true;
     if (!is_remark(name) && !is_other_line(name)) return false;
     text.remove_prefix(end == std::string_view::npos ? text.size() : end + 1);
   }
