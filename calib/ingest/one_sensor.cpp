@@ -45,7 +45,7 @@ std::optional<Error> lacks_sensor(std::span<const Recording> recordings, const s
     if (!is_by_scans(recording) || counts.contains(sensor) || is_unnamed) continue;
     return Error{ErrorCode::usage,
                  "has no scans of the sensor \"" + sensor + "\", but of: " + list_of(counts), recording.name,
-                 "leave it out, or solve its sensor separately: each has a mounting of its own"};
+                 "leave this recording out, or solve its sensor separately: each has a mounting of its own"};
   }
   return std::nullopt;
 }
