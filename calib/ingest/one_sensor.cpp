@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <map>
+#include <utility>
 #include <vector>
 
 #include "calib/ingest/reference_faults.hpp"
@@ -57,11 +58,10 @@ std::optional<Error> two_sensors(std::span<const Recording> recordings) {
     if (known == nullptr) known = &recording;
     const std::string &one = known->scans.front().sensor, &other = recording.scans.front().sensor;
     if (other == one) continue;
-    return Error{
-        ErrorCode::refused,
-        "its scans are of the sensor \"" + other + "\", but those of " + known->name + " of \"" + one + "\"",
-        recording.name,
-        "name the sensor that all recordings have with --sensor, or solve those of each separately"};
+    std::string what = "its scans are of the sensor \"" + other + "\", but those of ";
+    what += known->name + " of \"" + one + "\"";
+    return Error{ErrorCode::refused, std::move(what), recording.name,
+                 "name the sensor that all recordings have with --sensor, or solve those of each separately"};
   }
   return std::nullopt;
 }

@@ -38,7 +38,9 @@ Result<LidarLink::Address> LidarLink::address_of(const std::string& device, cons
   if (parts.scheme == "tcp" && type.port != 0) return Address{true, with_port(parts.path, type.port), 0, {}};
   const unsigned baud = number_of(parts.option("baud", std::to_string(type.baud)));
   const std::string dtr = parts.option("dtr", type.dtr ? "1" : "0");
-  if (parts.scheme == "serial" && type.baud != 0 && baud == 0) return drivers::baud_of(parts).error();
+  if (parts.scheme == "serial" && type.baud != 0 && baud == 0)
+    return Error{ErrorCode::usage, "\"" + parts.option("baud", "") + "\" is no baud rate", device,
+                 "correct lidar.device in the configuration"};
   if (parts.scheme == "serial" && type.baud != 0 && dtr != "0" && dtr != "1")
     return Error{ErrorCode::usage, "\"dtr=" + dtr + "\" is neither 0 nor 1", device,
                  "correct lidar.device in the configuration"};
@@ -92,7 +94,7 @@ std::optional<Result<std::string>> LidarLink::address_now() {
       problem_ = {ErrorCode::device, "the name \"" + host_name() + "\" is being looked up", device_,
                   "wait, or write the address in numbers"};
   }
-  const auto answer = lookup_->answer();
+  auto answer = lookup_->answer();
   if (!answer) return std::nullopt;
   lookup_.reset();
   if (answer->ok()) found_address_ = answer->value();

@@ -68,8 +68,7 @@ Result<DeviceString> parse_device(const std::string& text) {
   if (has_options && (question + 1 == text.size() || !parse_options(text.substr(question + 1), out)))
     return bad_device(text, "options after \"?\" must be key=value, each key once, joined by &");
   for (const auto& [key, value] : out.options)
-    if (std::none_of(scheme->options.begin(), scheme->options.end(),
-                     [&](const char* known) { return key == known; }))
+    if (std::find(scheme->options.begin(), scheme->options.end(), key) == scheme->options.end())
       return Error{ErrorCode::usage, "unknown option \"" + key + "\"", "device \"" + text + "\"",
                    scheme->remedy};
   return out;

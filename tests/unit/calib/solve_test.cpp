@@ -98,7 +98,7 @@ TEST(Solve, S1_14_a_corridor_is_refused_as_a_place_that_scans_cannot_tell) {
 TEST(Solve, says_in_a_refusal_that_poses_have_replaced_the_scans) {
   Recording recording;
   recording.robot = {0.15, 0.15, 0.4, 4096.0, std::nullopt, "", ""};
-  for (int k = 0; k < 300; ++k) recording.ticks.push_back({0.02 * k, 9 * k, 9 * k, 0});
+  for (int k = 0; k < 300; ++k) recording.ticks.push_back({0.02 * k, 9L * k, 9L * k, 0});
   for (int k = 0; k < 8; ++k) recording.poses.push_back({0.1 * k, 0.01 * k, 0.0, 0.0});
   recording.scans.resize(60);
   for (std::size_t k = 0; k < 60; ++k) recording.scans[k].t = 0.1 * static_cast<double>(k);
@@ -113,7 +113,7 @@ TEST(Solve, recordings_of_two_lidars_are_refused) {
   for (Recording& recording : recordings) {
     recording.name = &recording == recordings.data() ? "drive1" : "drive2";
     recording.robot = {0.15, 0.15, 0.4, 4096.0, std::nullopt, "", ""};
-    for (int k = 0; k < 300; ++k) recording.ticks.push_back({0.02 * k, 9 * k, 9 * k, 0});
+    for (int k = 0; k < 300; ++k) recording.ticks.push_back({0.02 * k, 9L * k, 9L * k, 0});
     for (unsigned k = 0; k < 60; ++k) {
       recording.scans.push_back(odomcalib::test_support::scan_from(odomcalib::test_support::kRoom,
                                                                    {0.01 * k, 0.0, 0.0}, 0.01, k, 360));
