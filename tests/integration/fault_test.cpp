@@ -61,7 +61,8 @@ TEST_P(DeceivingFault, is_found_by_the_lidar_before_half_a_metre_or_a_third_of_a
   run(1.0);
   acquire();
   TestClient mover(folder_ / "control");
-  mover.call(GetParam().method, {{"lease", lease_}, {"distance", 1.0}, {"turns", 1.0}}, true);
+  const char* const how_far = std::string_view(GetParam().method) == "Spin" ? "turns" : "distance";
+  mover.call(GetParam().method, {{"lease", lease_}, {how_far, 1.0}}, true);
   double distance = 0.0, turn = 0.0, last = robot_->pose().yaw;
   std::optional<control::Reply> got;
   run_until(
