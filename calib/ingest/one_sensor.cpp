@@ -31,12 +31,11 @@ std::string most_of(const std::map<std::string, std::size_t>& counts) {
       ->first;
 }
 
-/// Poses and increments replace scans.
+}  // namespace
+
 bool is_by_scans(const Recording& recording) {
   return recording.poses.empty() && recording.increments.empty() && !recording.scans.empty();
 }
-
-}  // namespace
 
 std::optional<Error> lacks_sensor(std::span<const Recording> recordings, const std::string& sensor) {
   if (sensor.empty()) return std::nullopt;

@@ -9,6 +9,9 @@
 
 namespace odomcalib::calib::ingest {
 
+/// Whether scans are the reference: poses and increments replace them.
+bool is_by_scans(const Recording& recording);
+
 /// A recording whose scans are of other sensors than the one that was asked for; nullopt where each has some
 /// of it, names no sensor, or has another reference than scans. Error: usage.
 /// @param sensor empty: none was asked for

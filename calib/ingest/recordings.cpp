@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "calib/ingest/one_sensor.hpp"
 #include "calib/ingest/settings.hpp"
 #include "calib/ingest/tick_stamps.hpp"
 #include "calib/math/se2.hpp"
@@ -104,9 +105,6 @@ std::vector<EffectResult> effects_of(const StampReport& report) {
 }
 
 std::optional<Scale> scale_by_data_sheet(std::span<const Recording> recordings) {
-  const auto is_by_scans = [](const Recording& recording) {
-    return recording.poses.empty() && recording.increments.empty() && !recording.scans.empty();
-  };
   if (!std::any_of(recordings.begin(), recordings.end(), is_by_scans)) return std::nullopt;
   return Scale{1.0, settings::kLidarScale, "lidar data sheet"};
 }

@@ -36,15 +36,17 @@ Result<LidarLink::Address> LidarLink::address_of(const std::string& device, cons
   if (!parsed) return parsed.error();
   const drivers::DeviceString& parts = parsed.value();
   if (parts.scheme == "tcp" && type.port != 0) return Address{true, with_port(parts.path, type.port), 0, {}};
-  const unsigned baud = number_of(parts.option("baud", std::to_string(type.baud)));
-  const std::string dtr = parts.option("dtr", type.dtr ? "1" : "0");
-  if (parts.scheme == "serial" && type.baud != 0 && baud == 0)
-    return Error{ErrorCode::usage, "\"" + parts.option("baud", "") + "\" is no baud rate", device,
-                 "correct lidar.device in the configuration"};
-  if (parts.scheme == "serial" && type.baud != 0 && dtr != "0" && dtr != "1")
-    return Error{ErrorCode::usage, "\"dtr=" + dtr + "\" is neither 0 nor 1", device,
-                 "correct lidar.device in the configuration"};
-  if (parts.scheme == "serial" && type.baud != 0) return Address{false, parts.path, baud, {dtr == "1", true}};
+  constexpr const char* kCorrect = "correct lidar.device in the configuration";
+  if (parts.scheme == "serial" && type.baud != 0) {
+    const unsigned baud = number_of(parts.option("baud", std::to_string(type.baud)));
+    if (baud == 0)
+      return Error{ErrorCode::usage, "\"" + parts.option("baud", "") + "\" is no baud rate", device,
+                   kCorrect};
+    const std::string dtr = parts.option("dtr", type.dtr ? "1" : "0");
+    if (dtr != "0" && dtr != "1")
+      return Error{ErrorCode::usage, "\"dtr=" + dtr + "\" is neither 0 nor 1", device, kCorrect};
+    return Address{false, parts.path, baud, {dtr == "1", true}};
+  }
   const std::string serial = "\"serial:/dev/ttyUSB0?baud=" + std::to_string(type.baud) + "\"";
   const std::string network = "\"tcp:192.168.0.10:" + std::to_string(type.port) + "\"";
   return Error{ErrorCode::usage,
@@ -52,7 +54,7 @@ Result<LidarLink::Address> LidarLink::address_of(const std::string& device, cons
                    (type.baud == 0   ? network
                     : type.port == 0 ? serial
                                      : serial + " or " + network),
-               device, "correct lidar.device in the configuration"};
+               device, kCorrect};
 }
 
 Result<LidarLink> LidarLink::create(const std::string& device, const std::string& type) {

@@ -275,15 +275,15 @@ bool has_write_ahead_log(const std::filesystem::path& path) {
   return std::filesystem::file_size(path.string() + "-wal", none) > 0 && !none;
 }
 
-constexpr const char* kWriteAheadLog =
-    "what lies in its -wal beside it; merge it: sqlite3 FILE 'PRAGMA wal_checkpoint(TRUNCATE)'";
+constexpr const char* kMerge = "sqlite3 FILE 'PRAGMA wal_checkpoint(TRUNCATE)'";
+
+std::string what_the_log_has() { return std::string("what lies in its -wal beside it; merge it: ") + kMerge; }
 
 /// The error, with another remedy where what a file lacks may lie in its log.
 Error with_log(Error error, const std::filesystem::path& path) {
   const bool is_lacking = error.code == ErrorCode::format || error.code == ErrorCode::empty;
   if (is_lacking && has_write_ahead_log(path))
-    error.remedy =
-        "merge what lies in its -wal beside it first: sqlite3 FILE 'PRAGMA wal_checkpoint(TRUNCATE)'";
+    error.remedy = std::string("merge what lies in its -wal beside it first: ") + kMerge;
   return error;
 }
 
@@ -301,7 +301,8 @@ Result<Recording> read_folder(const std::filesystem::path& folder, const Wanted&
     hashes += sha256_hex(file.value()) + "\n";
     if (auto error = ros::read_container(file.value(), path.string(), collector))
       return with_log(*error, path);
-    if (has_write_ahead_log(path)) builder.discard("file", path.filename().string() + ": " + kWriteAheadLog);
+    if (has_write_ahead_log(path))
+      builder.discard("file", path.filename().string() + ": " + what_the_log_has());
   }
   overview.form = "rosbag2 folder";
   overview.topics = ros::overview_of(collector.topics());
@@ -338,7 +339,7 @@ Result<Recording> read_any(const std::filesystem::path& path, const Wanted& want
   if (std::filesystem::is_directory(path, none)) return read_folder(path, wanted, overview);
   auto recording = read_file(path, wanted, overview);
   if (!recording) return with_log(recording.error(), path);
-  if (has_write_ahead_log(path)) recording.value().discarded.push_back({"file", kWriteAheadLog, 1});
+  if (has_write_ahead_log(path)) recording.value().discarded.push_back({"file", what_the_log_has(), 1});
   return recording;
 }
 
