@@ -5,7 +5,7 @@ Usage: tests/settings/vary.py prepare --into TREE                       numbers 
        tests/settings/vary.py run BIN --rows FILE [--recordings NAME...]  solves recordings with each number halved and doubled
        tests/settings/vary.py state                                     writes what the rows say into the settings files
        tests/settings/vary.py table                                     all numbers as a page: docs/developer/numbers.md
-       tests/settings/vary.py --check                                   every number has an origin, and says what the rows say
+       tests/settings/vary.py --check                                   every number has an origin, and says what the rows say, as the page does
        tests/settings/vary.py --self-test
 
 A number is a constant of a file calib/*/settings.hpp; those are varied whose comment gives no reason. In TREE each place that uses one may go on with its half or its double
@@ -36,6 +36,7 @@ import tempfile
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 FACTORS = (0.5, 2.0)
 ROWS = ROOT / "tests/settings/rows.jsonl"
+PAGE_FILE = ROOT / "docs/developer/numbers.md"
 PAGE = """# The numbers of calib
 
 Made by `tests/settings/vary.py table` from the settings files of `calib`, one of each layer, and from `tests/settings/rows.jsonl`. Of {count} numbers
@@ -267,21 +268,23 @@ def effect_of(lines, factor):
 
 
 def table(rows):
+    """The page of all numbers, Markdown."""
     by_setting = lines_by_setting(rows)
     trials = sorted({line["recording"] for lines in by_setting.values() for line in lines.values()})
     words = collections.Counter(said_of([f"{layer}.{name}"], by_setting)
                                 for layer, name, _, comment in described() if not has_reason(comment))
-    print(PAGE.format(count=len(described()), recordings=", ".join(f"`{name}`" for name in trials), trials=len(trials),
+    page = [PAGE.format(count=len(described()), recordings=", ".join(f"`{name}`" for name in trials), trials=len(trials),
                       **{word: words[word] for word in ("insensitive", "sensitive", "untried")},
-                      reasoned=sum(has_reason(comment) for *_, comment in described())))
+                      reasoned=sum(has_reason(comment) for *_, comment in described()))]
     layer = None
     for of, name, value, comment in described():
         if of != layer:
             layer = of
-            print(f"\n## {layer}\n\n| number | value | what it is, and where it comes from | halved | doubled |\n| --- | --- | --- | --- | --- |")
+            page.append(f"\n## {layer}\n\n| number | value | what it is, and where it comes from | halved | doubled |\n| --- | --- | --- | --- | --- |")
         lines = by_setting[f"{of}.{name}"].values()
         cells = [effect_of(lines, factor) if lines else "–" for factor in FACTORS]
-        print(f"| `{name}` | {value} | {comment.replace('|', chr(92) + '|')} | {cells[0]} | {cells[1]} |")
+        page.append(f"| `{name}` | {value} | {comment.replace('|', chr(92) + '|')} | {cells[0]} | {cells[1]} |")
+    return "\n".join(page) + "\n"
 
 
 def self_test():
@@ -331,6 +334,8 @@ def main():
         self_test()
     elif arguments.check:
         found = problems(arguments.rows)
+        if table(arguments.rows) != PAGE_FILE.read_text(encoding="utf-8"):
+            found.append(f"{PAGE_FILE.relative_to(ROOT)} says something else; make it again: vary.py table")
         print("\n".join(found), f"{len(found)} numbers without a true origin", sep="\n" if found else "")
         return 1 if found else 0
     elif arguments.what == "prepare" and arguments.into:
@@ -340,7 +345,7 @@ def main():
     elif arguments.what == "state":
         state(arguments.rows)
     elif arguments.what == "table":
-        table(arguments.rows)
+        sys.stdout.write(table(arguments.rows))
     else:
         parser.error("prepare --into TREE, run BIN, state, table, or --check")
     return 0
