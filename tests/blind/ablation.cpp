@@ -50,13 +50,16 @@ std::vector<Ablation> ablate(std::uint64_t campaign, unsigned number, const sim:
   return all;
 }
 
-RuleSet rules_without(const std::string& name) {
-  if (name.empty()) return {};
-  const auto known = calib::selection::rules_named(name);
-  if (!known)
-    throw std::invalid_argument("no rule of the search, and no group of them, is called \"" + name +
-                                "\": --rules and --rule-groups list the names");
-  return RuleSet().without(*known);
+RuleSet rules_without(const std::vector<std::string>& names) {
+  RuleSet fewer;
+  for (const std::string& name : names) {
+    const auto known = calib::selection::rules_named(name);
+    if (!known)
+      throw std::invalid_argument("no rule of the search, and no group of them, is called \"" + name +
+                                  "\": --rules and --rule-groups list the names");
+    fewer = fewer.without(*known);
+  }
+  return fewer;
 }
 
 std::string to_json_line(const Ablation& ablation) {

@@ -25,9 +25,9 @@ struct Ablation {
 std::vector<Ablation> ablate(std::uint64_t campaign, unsigned number, const sim::BlindOptions& options,
                              Judged judged, AblationOf of);
 
-/// All rules but the one, or the group, of that name; all of them where it is empty. Throws
-/// std::invalid_argument if there is none of that name.
-calib::selection::RuleSet rules_without(const std::string& name);
+/// All rules but those, or those groups, of these names. Throws std::invalid_argument if there is none of a
+/// name.
+calib::selection::RuleSet rules_without(const std::vector<std::string>& names);
 
 /// One line of JSON: the row, the rule, and what tests/blind/bed counts; of a calibration that does not
 /// change, nothing else.

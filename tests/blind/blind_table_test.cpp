@@ -91,10 +91,12 @@ TEST(Ablation, of_a_calibration_that_does_not_change_is_a_short_line) {
 
 TEST(Ablation, leaves_out_a_rule_or_a_group_by_name) {
   using calib::selection::Rule;
-  EXPECT_FALSE(rules_without("few_bends").has(Rule::few_bends));
-  EXPECT_FALSE(rules_without("wrong_shape").has(Rule::few_bends));
-  EXPECT_TRUE(rules_without("").has(Rule::few_bends));
-  EXPECT_THROW(rules_without("no_such_rule"), std::invalid_argument);
+  EXPECT_FALSE(rules_without({"few_bends"}).has(Rule::few_bends));
+  EXPECT_FALSE(rules_without({"wrong_shape"}).has(Rule::few_bends));
+  EXPECT_TRUE(rules_without({}).has(Rule::few_bends));
+  EXPECT_FALSE(rules_without({"few_bends", "chance"}).has(Rule::few_bends));
+  EXPECT_FALSE(rules_without({"few_bends", "chance"}).has(Rule::significance));
+  EXPECT_THROW(rules_without({"no_such_rule"}), std::invalid_argument);
 }
 
 }  // namespace

@@ -35,10 +35,10 @@ void put_line(const std::string& line) {
   std::fflush(stdout);
 }
 
-/// @param without_rule name of a rule of the search, or of a group; empty: all hold
-int run(const Part& part, const std::string& without_rule) {
+/// @param left_out names of rules of the search, or of groups
+int run(const Part& part, const std::vector<std::string>& left_out) {
   namespace blind = odomcalib::blind;
-  const auto rules = blind::rules_without(without_rule);
+  const auto rules = blind::rules_without(left_out);
   for (unsigned number = part.first; number < part.first + part.count; ++number)
     put_line(
         blind::to_json_line(blind::run_trial(part.campaign, number, part.options, part.judged(), rules)));
@@ -90,8 +90,8 @@ int print_table(const std::vector<std::string>& files, const std::vector<std::st
 int main(int argc, char** argv) try {
   CLI::App app{"Blind test: recordings with effects that the solver is not told about, scored"};
   Part part;
-  std::vector<std::string> files, others;
-  std::string without_rule, ablation_of;
+  std::vector<std::string> files, others, left_out;
+  std::string ablation_of;
   bool rules = false, rule_groups = false, by_campaign = false;
   app.add_option("--seed", part.campaign, "of the campaign");
   app.add_option("--first", part.first, "number of the first recording");
@@ -103,7 +103,7 @@ int main(int argc, char** argv) try {
   app.add_option("--beside", others, "pair them with these files, of the same recordings by another version");
   app.add_flag("--by-campaign", by_campaign, "make a table with a line for each campaign");
   // For tests/blind/bed: an empty group keeps them out of the help.
-  app.add_option("--without-rule", without_rule, "leave out this rule of the search, or this group")
+  app.add_option("--without-rule", left_out, "leave out these rules of the search, or these groups")
       ->group("");
   app.add_option("--ablation-of", ablation_of, "leave out each rule, or each group of rules, in turn")
       ->check(CLI::IsMember({"rules", "groups"}))
@@ -120,7 +120,7 @@ int main(int argc, char** argv) try {
   using odomcalib::blind::AblationOf;
   if (!ablation_of.empty())
     return run_ablation(part, ablation_of == "groups" ? AblationOf::groups : AblationOf::rules);
-  return run(part, without_rule);
+  return run(part, left_out);
 } catch (const std::exception& error) {
   std::fprintf(stderr, "error: %s\n", error.what());
   return 1;
