@@ -81,8 +81,7 @@ std::optional<FreeTerm> free_alternative_to(const FitTask& task, const FittedMod
       !is_better(task, model, dependence->model, schwarz(model.fit)))
     return std::nullopt;
   CrossValidation validation;
-  const auto missing = objection(task, *without, dependence->model, validation::all_folds(),
-                                 largest_ratio(candidate), validation);
+  const auto missing = objection(task, *without, dependence->model, validation::all_folds(), validation);
   return missing.empty() ? std::optional(FreeTerm{std::move(*dependence), validation}) : std::nullopt;
 }
 

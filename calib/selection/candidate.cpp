@@ -1,12 +1,10 @@
 #include "calib/selection/candidate.hpp"
 
 #include <algorithm>
-#include <limits>
 #include <set>
 #include <type_traits>
 #include <variant>
 
-#include "calib/selection/settings.hpp"
 #include "calib/terms/candidate_smooths.hpp"
 #include "calib/terms/catalogue.hpp"
 #include "calib/terms/smooth_term_effect.hpp"
@@ -49,18 +47,6 @@ void add_smooths(std::span<const vehicle::DriveModel* const> models, std::vector
     candidates.push_back(candidate_of(smooth));
 }
 
-std::vector<vehicle::Dependence> dependences_of(const Candidate& candidate) {
-  return candidate.smooth ? std::vector<vehicle::Dependence>{candidate.smooth->dependence}
-                          : candidate.effect->dependences();
-}
-
-/// A smooth term of what the robot did before.
-bool depends_on_history(const Candidate& candidate) {
-  if (!candidate.smooth) return false;
-  const vehicle::Covariate covariate = candidate.smooth->dependence.covariate;
-  return is_memory(covariate) || is_distance_since(covariate);
-}
-
 }  // namespace
 
 Candidate candidate_of(const terms::SmoothTerm& smooth) {
@@ -97,25 +83,6 @@ std::vector<Candidate> floor_waves(std::span<const vehicle::DriveModel* const> m
 
 bool contains(const std::vector<vehicle::Dependence>& dependences, const vehicle::Dependence& dependence) {
   return std::find(dependences.begin(), dependences.end(), dependence) != dependences.end();
-}
-
-bool must_be_worthwhile(const Candidate& candidate) {
-  if (depends_on_history(candidate) || (candidate.smooth && happens_at_once(*candidate.smooth))) return true;
-  const auto dependences = dependences_of(candidate);
-  return std::any_of(dependences.begin(), dependences.end(), [](const vehicle::Dependence& dependence) {
-    return dependence.covariate == vehicle::Covariate::heading ||
-           dependence.covariate == vehicle::Covariate::position ||
-           dependence.covariate == vehicle::Covariate::since_stop;
-  });
-}
-
-double largest_ratio(const Candidate& candidate) {
-  if (must_be_worthwhile(candidate)) return settings::kWorthwhile;
-  // An error that comes back with each turn of a wheel cancels over ten seconds, however plain in between.
-  if (candidate.smooth && is_phase(candidate.smooth->dependence.covariate))
-    return std::numeric_limits<double>::infinity();
-  const bool will_be_used = candidate.effect->storage() == vehicle::Storage::host;
-  return candidate.smooth && will_be_used ? settings::kUseful : std::numeric_limits<double>::infinity();
 }
 
 bool has_textbook_shape(const std::shared_ptr<const vehicle::Effect>& effect) {

@@ -37,15 +37,6 @@ std::vector<Candidate> floor_waves(std::span<const vehicle::DriveModel* const> m
 
 bool contains(const std::vector<vehicle::Dependence>& dependences, const vehicle::Dependence& dependence);
 
-/// Scan matching has a bias of its own in a room, and in a scripted drive what happened before stands for
-/// the place in the script: what goes with such covariates must be more than that. So must an event, which is
-/// sought all over the drive.
-bool must_be_worthwhile(const Candidate& candidate);
-
-/// Largest share of the open-loop error that the candidate may leave. A smooth term that odometry will use
-/// must be seen to help odometry.
-double largest_ratio(const Candidate& candidate);
-
 /// Whether it is the first of its variants; another is a choice of the data.
 bool has_textbook_shape(const std::shared_ptr<const vehicle::Effect>& effect);
 

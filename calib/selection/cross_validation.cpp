@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <optional>
 
-#include "calib/math/number_text.hpp"
 #include "calib/selection/settings.hpp"
 
 namespace odomcalib::calib::selection {
@@ -44,9 +43,7 @@ std::optional<GainComparison> compared(validation::WindowKind kind, const FitTas
 struct Gain {
   double before = 0.0, after = 0.0;
   validation::Improvement improvement;
-  [[nodiscard]] bool is_proved(double largest_ratio) const {
-    return improvement.upper < 1.0 && improvement.ratio <= largest_ratio;
-  }
+  [[nodiscard]] bool is_proved() const { return improvement.upper < 1.0; }
 };
 
 std::optional<Gain> gain_over(const FitTask& task, const FittedModel& before, const FittedModel& after,
@@ -62,14 +59,14 @@ std::optional<Gain> gain_over(const FitTask& task, const FittedModel& before, co
 /// A rare error shows only where a fit takes pairs for failed matches, and one that always acts is drowned
 /// there: a candidate may pass by either.
 std::optional<Gain> best_gain(const FitTask& task, const FittedModel& before, const FittedModel& after,
-                              const validation::FoldFlags& selected, double largest_ratio) {
+                              const validation::FoldFlags& selected) {
   const auto trusted = validation::trusted_pairs(before.fit, after.fit);
   const auto usual = gain_over(task, before, after, selected, trusted);
-  if (usual && usual->is_proved(largest_ratio)) return usual;
+  if (usual && usual->is_proved()) return usual;
   const auto measured = validation::measured_pairs(task.data, trusted);
   if (measured == trusted) return usual;
   const auto all = gain_over(task, before, after, selected, measured);
-  return all && all->is_proved(largest_ratio) ? all : usual;
+  return all && all->is_proved() ? all : usual;
 }
 
 }  // namespace
@@ -89,15 +86,12 @@ DriveChange change_of_drives(const FitTask& task, const FittedModel& before, con
 }
 
 std::string objection(const FitTask& task, const FittedModel& before, const FittedModel& after,
-                      const validation::FoldFlags& selected, double largest_ratio,
-                      CrossValidation& validation) {
-  if (const auto gain = best_gain(task, before, after, selected, largest_ratio)) {
+                      const validation::FoldFlags& selected, CrossValidation& validation) {
+  if (const auto gain = best_gain(task, before, after, selected)) {
     validation.before = gain->before;
     validation.after = gain->after;
     validation.improvement = gain->improvement;
-    if (validation.improvement.ratio > largest_ratio && task.rules.has(Rule::worthwhile_gain))
-      return "too small a gain: error times " + math::five_characters(validation.improvement.ratio);
-    if (validation.improvement.upper < 1.0) return {};
+    if (gain->is_proved()) return {};
     if (validation.improvement.lower > 1.0 && task.rules.has(Rule::certain_gain))
       return "held-out error rises";
   }

@@ -29,11 +29,9 @@ DriveChange change_of_drives(const FitTask& task, const FittedModel& before, con
 
 /// On one noise model: error over ten seconds, or else whitened residual per block.
 /// @param selected the choice itself is held out: a fold counts only if the others point to the candidate
-/// @param largest_ratio of the errors over ten seconds after and before
 /// @return empty if it holds, otherwise what is missing
 std::string objection(const FitTask& task, const FittedModel& before, const FittedModel& after,
-                      const validation::FoldFlags& selected, double largest_ratio,
-                      CrossValidation& validation);
+                      const validation::FoldFlags& selected, CrossValidation& validation);
 
 /// Each model's own weights spare what it explains badly: both are compared with the larger ones.
 validation::HeldOutGain compared_on_held_out(const FitTask& task, const FittedModel& before,

@@ -115,8 +115,6 @@ Reshaped at_best_change_point(const FitTask& task, Reshaped now) {
 void select_hyperparameters_of_newest(const FitTask& task, SearchResult& result) {
   fit_anew_on_own_noise(task, result.model);
   const std::vector<Reshaped> shapes = select_hyperparameters(task, result);
-  if (takes_an_event(result.smooths.back().smooth) && task.rules.has(Rule::median_threshold))
-    take_shape(median_threshold_of(shapes, result.model.fit.cost + settings::kAkaike), result);
   for (const Reshaped& other : shapes)
     if (other.model.fit.cost < result.model.fit.cost + schwarz(result.model.fit))
       result.model_uncertainties.emplace_back(other.model.base() - result.model.base());

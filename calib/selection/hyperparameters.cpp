@@ -138,18 +138,6 @@ std::vector<Reshaped> reshaped(const FitTask& task, const Reshaped& now,
   return all;
 }
 
-const Reshaped& median_threshold_of(const std::vector<Reshaped>& shapes, double enough) {
-  std::vector<const Reshaped*> alike;
-  for (const Reshaped& shape : shapes)
-    if (takes_an_event(shape.smooth) && shape.model.fit.cost < enough) alike.push_back(&shape);
-  std::sort(alike.begin(), alike.end(),
-            [](const Reshaped* a, const Reshaped* b) { return a->smooth.memory < b->smooth.memory; });
-  const terms::SmoothTerm& least = alike.front()->smooth;
-  const bool was_none_too_short =
-      least.dependence.covariate == vehicle::Covariate::since_stop && least.memory == 0;
-  return *alike[was_none_too_short ? alike.size() - 1 : alike.size() / 2];
-}
-
 std::optional<Reshaped> in_best_shape(const FitTask& task, const FittedModel& model,
                                       const terms::SmoothTerm& smooth,
                                       const std::vector<measurement::NoiseModel>& noise) {

@@ -19,12 +19,6 @@ struct Reshaped {
 std::vector<Reshaped> reshaped(const FitTask& task, const Reshaped& now,
                                const std::vector<terms::SmoothTerm>& shapes);
 
-/// How long a stop or how large an acceleration it takes, of the smooth terms whose -2 log L is below
-/// `enough`: the middle of what the events of this drive leave open. Where no stop was too short the longest,
-/// so that nothing is made up of stops shorter than any that was seen.
-/// @param shapes of one smooth term; one that takes an event is below
-const Reshaped& median_threshold_of(const std::vector<Reshaped>& shapes, double enough);
-
 /// Decrease of -2 log L that a parameter needs when it is the question whether what it belongs to is there
 /// (Schwarz, Ann. Statist. 6, 1978); settings::kAkaike when that has passed cross-validation.
 double schwarz(const estimation::FitResult& fit);

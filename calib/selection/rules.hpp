@@ -18,17 +18,13 @@ enum class Rule : std::size_t {
   size_that_matters,
   no_contradiction,
   base_determined,
-  // Conditions on its score.
+  // Conditions on its score and its gain.
   significance,
-  hopeless_waves,
-  // Conditions on its gain.
-  worthwhile_gain,
   certain_gain,
   choice_held_out,
   gain_in_most_drives,
   drives_not_worse,
   enough_explained,
-  stricter_level,
   // Choice of the one that is meant among several candidates.
   clock_before_name,
   unnamed_clock,
@@ -50,7 +46,6 @@ enum class Rule : std::size_t {
   best_shape,
   credible_shape,
   few_bends,
-  median_threshold,
   hyperparameter_penalty,
   // Errors of the lidar, before any term of the wheels.
   lidar_significance,

@@ -90,7 +90,7 @@ class Search {
   /// One step; false when nothing more is justified.
   bool advance() {
     if (has_changed_) rescore();
-    const auto smooth = best_smooth(*round_, result_);
+    const auto smooth = best_smooth(*round_);
     const auto name = may_add_name() ? best_name_beside(smooth, *round_, result_) : std::nullopt;
     if (const auto late = name ? unnoticed_clock(*name) : std::nullopt; late && has(Rule::clock_before_name))
       return accept_name(*late);
@@ -122,17 +122,8 @@ class Search {
     has_changed_ = true;
   }
 
-  /// Waves are many, and what was nothing before one of them was found is not scored again.
-  void exclude_hopeless_waves() {
-    for (std::size_t k = 0; round_ && k < candidates_.size(); ++k)
-      if (candidates_[k].smooth && terms::basis_as<terms::Wave>(*candidates_[k].smooth) &&
-          round_->score(k).family_p_value > settings::kHopelessWave && has(Rule::hopeless_waves))
-        candidates_[k].excluded = true;
-  }
-
   /// Scores of all that is left, on the model as it is now.
   void rescore() {
-    exclude_hopeless_waves();
     std::erase_if(candidates_, [](const Candidate& c) { return c.excluded; });
     round_.emplace(task_,
                    FittedModel{result_.model.effects,
@@ -238,8 +229,7 @@ class Search {
     validation::FoldFlags selected = selected_without_fold(trial.candidate);
     if (selected != validation::all_folds() && !has(Rule::choice_held_out))
       selected = validation::all_folds();
-    std::string reason = objection(task_, basis(), trial.model, selected,
-                                   largest_ratio(candidates_[trial.candidate]), validation);
+    std::string reason = objection(task_, basis(), trial.model, selected, validation);
     if (!reason.empty()) return reason;
     if (may_be_chance(candidates_[trial.candidate], validation) && has(Rule::gain_in_most_drives)) {
       if (!has_drives(validation))
@@ -258,10 +248,11 @@ class Search {
   static bool has_drives(const CrossValidation& validation) { return validation.before > 0.0; }
 
   /// A smooth term that odometry follows. What folds that do not point to it make of it counts too: the next
-  /// drive may be like them.
+  /// drive may be like them. An error that comes back with each turn of a wheel cancels over ten seconds,
+  /// however plain in between.
   static bool odometry_uses(const Candidate& candidate) {
     return candidate.smooth && candidate.effect->storage() == vehicle::Storage::host &&
-           std::isfinite(largest_ratio(candidate));
+           !is_phase(candidate.smooth->dependence.covariate);
   }
 
   /// A smooth term that odometry would use must show its gain over ten seconds; where the reference is too
@@ -316,7 +307,7 @@ class Search {
     const auto& dependences = effect->dependences();
     const auto smooths = round_->by_score([&](std::size_t k) {
       const auto& smooth = candidates_[k].smooth;
-      return smooth && passes(k, *round_, result_) && contains(dependences, smooth->dependence);
+      return smooth && passes(k, *round_) && contains(dependences, smooth->dependence);
     });
     if (smooths.empty()) return std::nullopt;
     const std::size_t last = name.model.effects.size() - 1;

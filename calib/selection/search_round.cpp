@@ -14,11 +14,9 @@
 namespace odomcalib::calib::selection {
 namespace {
 
-double level(const Candidate& candidate, const SearchResult& found, const RuleSet& rules) {
-  if (!candidate.smooth) return is_clock(candidate) ? settings::kClockLevel : settings::kNamedLevel;
-  const bool is_stricter = (found.owner_of(candidate.smooth->dependence) || must_be_worthwhile(candidate)) &&
-                           rules.has(Rule::stricter_level);
-  return is_stricter ? settings::kNamedLevel : settings::kUnnamedLevel;
+double level(const Candidate& candidate) {
+  if (candidate.smooth) return settings::kUnnamedLevel;
+  return is_clock(candidate) ? settings::kClockLevel : settings::kNamedLevel;
 }
 
 /// Sum explained by the free smooth terms on those of a name's dependences that a finding has already.
@@ -49,7 +47,7 @@ bool is_rest_of_a_named_term(std::size_t name, const SearchRound& round, const S
 std::optional<Trial> best_name(SearchRound& round, const SearchResult& found) {
   std::set<std::string> tried;
   const auto is_open = [&](std::size_t k) {
-    return !round.candidate(k).smooth && passes(k, round, found) &&
+    return !round.candidate(k).smooth && passes(k, round) &&
            !(is_rest_of_a_named_term(k, round, found) && round.rules().has(Rule::rest_of_a_name));
   };
   for (const std::size_t k : round.by_score(is_open))
@@ -166,14 +164,14 @@ std::vector<Eigen::VectorXd> SearchRound::model_uncertainties_of(const std::vect
 
 bool is_clock(const Candidate& candidate) { return candidate.effect->storage() == vehicle::Storage::driver; }
 
-bool passes(std::size_t candidate, const SearchRound& round, const SearchResult& found) {
-  return round.score(candidate).family_p_value <= level(round.candidate(candidate), found, round.rules()) ||
+bool passes(std::size_t candidate, const SearchRound& round) {
+  return round.score(candidate).family_p_value <= level(round.candidate(candidate)) ||
          !round.rules().has(Rule::significance);
 }
 
-std::optional<std::size_t> best_smooth(const SearchRound& round, const SearchResult& found) {
+std::optional<std::size_t> best_smooth(const SearchRound& round) {
   const auto smooths =
-      round.by_score([&](std::size_t k) { return round.candidate(k).smooth && passes(k, round, found); });
+      round.by_score([&](std::size_t k) { return round.candidate(k).smooth && passes(k, round); });
   return smooths.empty() ? std::nullopt : std::optional(smooths.front());
 }
 

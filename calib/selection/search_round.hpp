@@ -78,9 +78,9 @@ class SearchRound {
 bool is_clock(const Candidate& candidate);
 
 /// Whether the score is significant at the candidate's own level.
-bool passes(std::size_t candidate, const SearchRound& round, const SearchResult& found);
+bool passes(std::size_t candidate, const SearchRound& round);
 
-std::optional<std::size_t> best_smooth(const SearchRound& round, const SearchResult& found);
+std::optional<std::size_t> best_smooth(const SearchRound& round);
 
 /// The best name, unless the smooth term is clearly better: then one on the smooth term's own ground, which
 /// may be the second best of two effects.

@@ -31,11 +31,6 @@ inline constexpr double kFoldLevel = 0.05;
 
 // --- Gain on held-out data -------------------------------------------------------------------------------
 
-/// Largest share of the open-loop error that a candidate may leave where scan matching, or the place in a
-/// scripted drive, has a bias of its own. Chosen: less is not worth a model.
-inline constexpr double kWorthwhile = 0.95;
-/// The same for any other smooth term that odometry uses. Chosen, untried.
-inline constexpr double kUseful = 0.97;
 /// Ratio of errors above which, beyond its 95 % interval, a recording is spoilt. Chosen, untried.
 inline constexpr double kTolerated = 1.05;
 /// Evaluation windows; fewer say nothing. Chosen, untried.
@@ -171,8 +166,6 @@ inline constexpr int kMostSteps = 12;
 inline constexpr int kMostSearchIterations = 24;
 /// Share of what a name explains from which a small delay explains it as well. Chosen, untried.
 inline constexpr double kClockShareOfName = 0.9;
-/// Family-wise p-value above which a wave is not scored again. Chosen: time.
-inline constexpr double kHopelessWave = 0.05;
 
 // --- Search round ----------------------------------------------------------------------------------------
 

@@ -120,10 +120,6 @@ bool is_of_one_drive(const SmoothTerm& smooth) {
   return belongs_to_the_place(smooth.dependence.covariate) || basis_as<Cycle>(smooth) != nullptr;
 }
 
-bool takes_an_event(const SmoothTerm& smooth) {
-  return smooth.dependence.covariate == vehicle::Covariate::since_stop || basis_as<Relay>(smooth) != nullptr;
-}
-
 bool happens_at_once(const SmoothTerm& smooth) { return basis_as<ChangePoint>(smooth) != nullptr; }
 
 }  // namespace odomcalib::calib::terms

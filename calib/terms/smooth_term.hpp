@@ -67,9 +67,6 @@ bool belongs_to_lidar(const SmoothTerm& smooth);
 /// Has a phase or an origin that the next drive does not share.
 bool is_of_one_drive(const SmoothTerm& smooth);
 
-/// Begins with a stop or an acceleration, of which it is not known how long or how large it has to be.
-bool takes_an_event(const SmoothTerm& smooth);
-
 /// All of it at one moment: no function that bends, but an event.
 bool happens_at_once(const SmoothTerm& smooth);
 

@@ -15,18 +15,6 @@
 namespace odomcalib::calib::selection::acceptance_test {
 namespace {
 
-TEST(Candidate, what_must_help_over_ten_seconds) {
-  const auto ratio = [](vehicle::Covariate covariate, vehicle::Channel channel) {
-    const terms::SmoothTerm smooth{{covariate, channel}, -1.0, 1.0};
-    return largest_ratio({make_smooth_term_effect(smooth), smooth, ""});
-  };
-  EXPECT_LT(ratio(vehicle::Covariate::speed, vehicle::Channel::both_travel), 1.0);
-  EXPECT_LT(ratio(vehicle::Covariate::heading, vehicle::Channel::both_travel),
-            ratio(vehicle::Covariate::speed, vehicle::Channel::both_travel));
-  EXPECT_GT(ratio(vehicle::Covariate::left_phase, vehicle::Channel::left_travel), 1.0)
-      << "cancels over whole turns of the wheel";
-}
-
 /// A fit whose last parameters are those of the effect.
 estimation::FitResult fit_with(const std::vector<double>& values, double deviation) {
   estimation::FitResult fit;

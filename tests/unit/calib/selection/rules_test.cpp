@@ -51,7 +51,7 @@ TEST(RuleSet, lacks_what_was_left_out_and_nothing_else) {
   EXPECT_FALSE(fewer.has(Rule::few_bends));
   EXPECT_FALSE(fewer.has(Rule::best_shape));
   EXPECT_FALSE(fewer.has(Rule::significance));
-  EXPECT_TRUE(fewer.has(Rule::stricter_level));
+  EXPECT_TRUE(fewer.has(Rule::exclusions));
 }
 
 TEST(RuleSet, notes_what_was_consulted) {

@@ -7,7 +7,6 @@
 #include <tuple>
 #include <utility>
 
-#include "calib/selection/hyperparameters.hpp"
 #include "calib/terms/candidate_smooths.hpp"
 #include "calib/terms/fitted_smooth_term.hpp"
 #include "calib/terms/smooth_term.hpp"
@@ -288,36 +287,6 @@ TEST(SmoothTerm, survives_the_calibration_file) {
   of_a_newer_program.carrier = "track";
   of_a_newer_program.high = 1.0;
   EXPECT_TRUE(terms::smooth_terms_of({of_a_newer_program}).empty());
-}
-
-/// A smooth term of an event in all that it may take, of which these are as likely as the best.
-std::vector<selection::Reshaped> in_shapes(vehicle::Covariate covariate, std::size_t first, std::size_t count,
-                                           std::initializer_list<std::size_t> likely) {
-  std::vector<selection::Reshaped> shapes(count);
-  for (std::size_t k = 0; k < count; ++k) {
-    shapes[k].smooth = {{covariate, vehicle::Channel::both_travel}, -1.0, 1.0, first + k};
-    shapes[k].model.fit.cost = 900.0;
-  }
-  for (const std::size_t k : likely) shapes[k].model.fit.cost = 501.0;
-  return shapes;
-}
-
-TEST(SmoothTerm, of_an_event_takes_the_middle_of_what_is_open) {
-  const std::size_t relays = vehicle::kMemorySpans.size();
-  const auto chosen = [](const std::vector<selection::Reshaped>& shapes) {
-    return median_threshold_of(shapes, 502.0).smooth.memory;
-  };
-  EXPECT_EQ(chosen(in_shapes(vehicle::Covariate::since_stop, 0, vehicle::kStops.size(), {4, 6, 5})), 5U);
-  EXPECT_EQ(chosen(in_shapes(vehicle::Covariate::since_stop, 0, vehicle::kStops.size(), {7})), 7U);
-  // No stop was too short: what shorter ones do was not seen.
-  EXPECT_EQ(chosen(in_shapes(vehicle::Covariate::since_stop, 0, vehicle::kStops.size(), {0, 1, 2, 3})), 3U);
-  EXPECT_EQ(chosen(in_shapes(vehicle::Covariate::previous_acceleration, relays,
-                             vehicle::kAccelerationThresholds.size(), {0, 1, 2})),
-            relays + 1);
-  // Fading memories are another matter.
-  EXPECT_EQ(chosen(in_shapes(vehicle::Covariate::previous_acceleration, 0,
-                             relays + vehicle::kAccelerationThresholds.size(), {0, relays + 3})),
-            relays + 3);
 }
 
 }  // namespace
