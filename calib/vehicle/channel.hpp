@@ -7,7 +7,7 @@
 #include <span>
 #include <string>
 
-#include "calib/vehicle/covariates/covariate_groups.hpp"
+#include "calib/vehicle/covariates.hpp"
 #include "calib/vehicle/motion_step.hpp"
 
 namespace odomcalib::calib::vehicle {

@@ -6,8 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "calib/vehicle/covariates/covariate_groups.hpp"
-#include "calib/vehicle/covariates/on_demand.hpp"
+#include "calib/vehicle/covariates.hpp"
 #include "calib/vehicle/motion_step.hpp"
 #include "calib/wheels/wheel_motion.hpp"
 

@@ -2,8 +2,7 @@
 #pragma once
 
 #include "calib/math/se2.hpp"
-#include "calib/vehicle/covariates/covariate_groups.hpp"
-#include "calib/vehicle/covariates/on_demand.hpp"
+#include "calib/vehicle/covariates.hpp"
 #include "calib/vehicle/motion_step.hpp"
 #include "calib/vehicle/settings.hpp"
 #include "calib/wheels/wheel_motion.hpp"

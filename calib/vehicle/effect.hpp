@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "calib/vehicle/channel.hpp"
-#include "calib/vehicle/covariates/covariate_groups.hpp"
+#include "calib/vehicle/covariates.hpp"
 #include "calib/vehicle/motion_step.hpp"
 #include "calib/vehicle/parameter_meaning.hpp"
 

@@ -6,12 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "calib/vehicle/covariates/motion_memory.hpp"
-#include "calib/vehicle/covariates/on_demand.hpp"
-#include "calib/vehicle/covariates/standstill.hpp"
-#include "calib/vehicle/covariates/sway.hpp"
-#include "calib/vehicle/covariates/tyre_relaxation.hpp"
-#include "calib/vehicle/covariates/winding.hpp"
+#include "calib/vehicle/covariates.hpp"
 
 namespace odomcalib::calib::vehicle {
 

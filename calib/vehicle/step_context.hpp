@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "calib/vehicle/covariates/covariate_groups.hpp"
+#include "calib/vehicle/covariates.hpp"
 #include "calib/vehicle/drive_context.hpp"
 #include "calib/vehicle/motion_step.hpp"
 #include "calib/wheels/wheel_motion.hpp"
