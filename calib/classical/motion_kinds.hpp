@@ -3,9 +3,12 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
+#include "calib/wheels/wheel_motion.hpp"
 #include "calib/wheels/wheel_track.hpp"
 
 namespace odomcalib::calib::classical {
@@ -45,5 +48,12 @@ struct ParameterSupply {
 /// missing: less than what the straight and spin methods refuse to do without; little: less than enough in
 /// either direction (docs/user/motions.md).
 std::vector<ParameterSupply> parameter_supply(const MotionKinds& kinds);
+
+/// The motion to record: the lines or the turns that are hardly there, or both where the wheels always turned
+/// in the same proportion. Nothing where no motion is missing.
+std::optional<std::string> missing_motion(std::span<const wheels::WheelMotion> motions);
+
+/// The remedy of an estimate that the motion does not determine: to record what is missing, or more of each.
+std::string record_more(std::span<const wheels::WheelMotion> motions);
 
 }  // namespace odomcalib::calib::classical

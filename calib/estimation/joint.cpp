@@ -8,7 +8,7 @@
 #include <string>
 #include <utility>
 
-#include "calib/classical/missing_motion.hpp"
+#include "calib/classical/motion_kinds.hpp"
 #include "calib/estimation/settings.hpp"
 #include "calib/estimation/stack.hpp"
 #include "calib/math/cluster_robust.hpp"

@@ -6,7 +6,7 @@
 #include <boost/math/tools/minima.hpp>
 #include <cmath>
 
-#include "calib/classical/missing_motion.hpp"
+#include "calib/classical/motion_kinds.hpp"
 #include "calib/estimation/settings.hpp"
 #include "calib/ingest/even_stamps.hpp"
 #include "calib/ingest/settings.hpp"

@@ -1,7 +1,6 @@
 #include "calib/ingest/checks.hpp"
 
-#include "calib/ingest/odometry_frame.hpp"
-#include "calib/ingest/pose_frame.hpp"
+#include "calib/ingest/frames.hpp"
 #include "calib/ingest/stamp_check.hpp"
 #include "calib/ingest/unit_check.hpp"
 

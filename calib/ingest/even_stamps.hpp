@@ -5,6 +5,8 @@
 #include <optional>
 #include <vector>
 
+#include "proto/recording/recording.hpp"
+
 namespace odomcalib::calib::ingest {
 
 struct EvenStamps {
@@ -62,5 +64,9 @@ class StampComparison {
 
   std::vector<Error> errors_;
 };
+
+/// Even stamps of the ticks, where counts grow steadily by number and not by stamp; nothing where the stamps
+/// are right, or where the wheels hardly turn. Counts that were sent twice get the same stamp.
+std::optional<EvenStamps> even_ticks(const Recording& recording);
 
 }  // namespace odomcalib::calib::ingest

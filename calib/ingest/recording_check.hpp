@@ -14,4 +14,9 @@ namespace odomcalib::calib::ingest {
 /// @param recordings one at least
 std::optional<Error> check_recordings(std::span<const Recording> recordings);
 
+/// Why these recordings are of two robots; nullopt where those that state a robot or its size state the same.
+/// Errors: format (their nominal lengths or ticks per turn differ), refused (they name different robots).
+/// @param same_robot somebody says that they are of one, whatever names they carry
+std::optional<Error> two_robots(std::span<const Recording> recordings, bool same_robot);
+
 }  // namespace odomcalib::calib::ingest

@@ -6,9 +6,9 @@
 #include <utility>
 #include <vector>
 
+#include "calib/ingest/even_stamps.hpp"
 #include "calib/ingest/one_sensor.hpp"
 #include "calib/ingest/settings.hpp"
-#include "calib/ingest/tick_stamps.hpp"
 #include "calib/math/se2.hpp"
 #include "calib/terms/catalogue.hpp"
 

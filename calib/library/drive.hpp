@@ -9,7 +9,6 @@
 #include <vector>
 
 #include "calib/library/counts.hpp"
-#include "calib/library/sample_gate.hpp"
 #include "calib/odometry/odometry.hpp"
 #include "calib/odometry/uncertainty.hpp"
 #include "calib/terms/lidar_effect.hpp"

@@ -6,7 +6,7 @@
 #include <Eigen/Core>
 #include <string>
 
-#include "calib/matching/bearing_order.hpp"
+#include "calib/matching/nearest.hpp"
 #include "calib/matching/settings.hpp"
 #include "calib/matching/surface.hpp"
 #include "calib/matching/walls.hpp"

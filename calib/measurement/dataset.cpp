@@ -5,7 +5,6 @@
 #include "calib/ingest/recording_check.hpp"
 #include "calib/measurement/settings.hpp"
 #include "calib/vehicle/step_context.hpp"
-#include "calib/wheels/fine_track.hpp"
 #include "calib/wheels/wheel_track.hpp"
 
 namespace odomcalib::calib::measurement {

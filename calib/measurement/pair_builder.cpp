@@ -8,7 +8,7 @@
 #include "calib/math/linear_solve.hpp"
 #include "calib/math/median.hpp"
 #include "calib/math/vector2.hpp"
-#include "calib/measurement/placed_poses.hpp"
+#include "calib/measurement/placed_scan.hpp"
 #include "calib/measurement/scan_surfaces.hpp"
 #include "calib/measurement/settings.hpp"
 

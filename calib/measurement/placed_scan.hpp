@@ -5,10 +5,12 @@
 #include <functional>
 #include <optional>
 #include <span>
+#include <vector>
 
 #include "calib/math/se2.hpp"
 #include "calib/measurement/settings.hpp"
 #include "calib/vehicle/drive_model.hpp"
+#include "proto/recording/recording.hpp"
 
 namespace odomcalib::calib::measurement {
 
@@ -56,5 +58,11 @@ using settings::kMeanReach;
 /// @param places in time order
 std::optional<PlacedScan> mean_place(std::span<const PlacedScan> places, double time,
                                      const PathOfWheels& wheels, double reach = kMeanReach);
+
+/// Means of the poses of a tenth of a second each, carried to their middle by the wheels. Their covariance is
+/// that of independent noise, estimated from how single poses scatter about the path of the wheels.
+/// Headings go on beyond half a turn.
+/// @param poses in time order
+std::vector<PlacedScan> placed_poses(std::span<const PoseSample> poses, const PathOfWheels& wheels);
 
 }  // namespace odomcalib::calib::measurement

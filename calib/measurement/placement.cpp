@@ -2,7 +2,7 @@
 
 #include <utility>
 
-#include "calib/measurement/placed_poses.hpp"
+#include "calib/measurement/placed_scan.hpp"
 
 namespace odomcalib::calib::measurement {
 namespace {

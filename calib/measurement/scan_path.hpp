@@ -7,8 +7,9 @@
 #include <vector>
 
 #include "calib/matching/settings.hpp"
+#include "calib/measurement/adjust.hpp"
 #include "calib/measurement/placed_scan.hpp"
-#include "calib/measurement/range_tracer.hpp"
+#include "calib/measurement/sensor_pair.hpp"
 #include "calib/vehicle/drive_model.hpp"
 #include "proto/recording/recording.hpp"
 
@@ -43,5 +44,15 @@ std::vector<vehicle::Fix> fixes_of(const ScanPath& path, const math::Pose& mount
 
 /// Fixes by the reference poses, which are the base's own; none for recordings without.
 std::vector<vehicle::Fix> fixes_of(const Recording& recording);
+
+/// Largest drift of the chained matches against the path, in deviations that independent errors of the stated
+/// covariances would have: the larger of x, y (map axes) and yaw.
+double drift_of_matches(const std::vector<SensorPair>& pairs, const ScanPath& path,
+                        const PathOfWheels& wheels);
+
+/// The same pairs with motions from place to place, each that of the nearest scan; pairs without one are left
+/// out.
+std::vector<SensorPair> pairs_of_places(const std::vector<SensorPair>& pairs, const ScanPath& path,
+                                        const PathOfWheels& wheels);
 
 }  // namespace odomcalib::calib::measurement

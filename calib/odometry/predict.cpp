@@ -2,7 +2,7 @@
 
 #include <cstddef>
 
-#include "calib/ingest/tick_stamps.hpp"
+#include "calib/ingest/even_stamps.hpp"
 #include "calib/odometry/dead_reckoning.hpp"
 #include "calib/odometry/odometry.hpp"
 #include "calib/vehicle/step_context.hpp"

@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "calib/classical/missing_motion.hpp"
+#include "calib/classical/motion_kinds.hpp"
 #include "calib/estimation/gyro_fit.hpp"
 #include "calib/report/contact_noise.hpp"
 #include "calib/report/found_effects.hpp"

@@ -1,5 +1,5 @@
 // Whether several recordings are of one robot in one state: what the calibration file and the verdict say.
-// Their own statements were compared before anything was measured (ingest/two_robots.hpp).
+// Their own statements were compared before anything was measured (ingest/recording_check.hpp).
 #pragma once
 
 #include <optional>

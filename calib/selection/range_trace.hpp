@@ -2,7 +2,7 @@
 // adjusted to.
 #pragma once
 
-#include "calib/measurement/range_tracer.hpp"
+#include "calib/measurement/adjust.hpp"
 #include "calib/selection/rules.hpp"
 
 namespace odomcalib::calib::selection {

@@ -5,7 +5,6 @@
 #include <vector>
 
 #include "calib/estimation/path_fit.hpp"
-#include "calib/measurement/placed_pairs.hpp"
 #include "calib/measurement/scan_path.hpp"
 #include "calib/selection/range_trace.hpp"
 #include "calib/validation/criterion.hpp"

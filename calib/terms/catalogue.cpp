@@ -3,6 +3,17 @@
 #include <algorithm>
 
 namespace odomcalib::calib::terms {
+namespace {
+
+constexpr auto kMeaningAmong = [](const auto& catalogue, std::string_view effect,
+                                  std::string_view parameter) -> const ParameterMeaning* {
+  for (const auto& one : catalogue)
+    for (const auto& own : one->parameters())
+      if (one->name() == effect && own.name == parameter) return &own.meaning;
+  return nullptr;
+};
+
+}  // namespace
 
 using EffectPtr = std::shared_ptr<const vehicle::Effect>;
 
@@ -90,6 +101,11 @@ LidarEffectPtr find_lidar_effect(const std::string& name) {
   for (const auto& effect : lidar_catalogue(false))
     if (effect->name() == name) return effect;
   return nullptr;
+}
+
+const ParameterMeaning* meaning_of(std::string_view effect, std::string_view parameter) {
+  const ParameterMeaning* of_wheels = kMeaningAmong(effect_catalogue(), effect, parameter);
+  return of_wheels ? of_wheels : kMeaningAmong(lidar_catalogue(false), effect, parameter);
 }
 
 }  // namespace odomcalib::calib::terms

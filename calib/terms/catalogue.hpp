@@ -3,10 +3,12 @@
 
 #include <memory>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "calib/terms/lidar_effect.hpp"
 #include "calib/vehicle/drive_model.hpp"
+#include "calib/vehicle/parameter_meaning.hpp"
 
 namespace odomcalib::calib::terms {
 
@@ -35,5 +37,11 @@ std::shared_ptr<const vehicle::Effect> make_scan_skew();
 LidarEffectPtr make_range_bias();
 /// @param all_round see lidar_catalogue()
 LidarEffectPtr make_angle_scale(bool all_round = false);
+
+using vehicle::ParameterMeaning;
+
+/// The meaning that the row of the effect states; of wheels or of the lidar.
+/// @return nullptr where there is none, as for a parameter of a file from another version
+const ParameterMeaning* meaning_of(std::string_view effect, std::string_view parameter);
 
 }  // namespace odomcalib::calib::terms

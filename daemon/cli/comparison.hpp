@@ -6,8 +6,7 @@
 #include <vector>
 
 #include "calib/comparison/difference.hpp"
-#include "calib/comparison/fleet.hpp"
-#include "calib/comparison/parameter_trends.hpp"
+#include "calib/comparison/trend.hpp"
 #include "proto/calibration/calibration.hpp"
 #include "proto/result.hpp"
 

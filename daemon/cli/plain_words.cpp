@@ -11,7 +11,7 @@
 #include <string_view>
 
 #include "calib/odometry/correction.hpp"
-#include "calib/terms/parameter_meaning.hpp"
+#include "calib/terms/catalogue.hpp"
 #include "daemon/cli/settings.hpp"
 #include "proto/angles.hpp"
 #include "proto/base_quantities.hpp"

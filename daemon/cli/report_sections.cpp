@@ -8,7 +8,7 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
-#include "calib/terms/parameter_meaning.hpp"
+#include "calib/terms/catalogue.hpp"
 #include "daemon/cli/display.hpp"
 #include "daemon/cli/plain_words.hpp"
 #include "daemon/cli/report_figures.hpp"

@@ -6,7 +6,7 @@
 #include <ctime>
 #include <random>
 
-#include "calib/matching/bearing_order.hpp"
+#include "calib/matching/nearest.hpp"
 #include "calib/matching/pose_search.hpp"
 #include "tests/unit/calib/room_scans.hpp"
 

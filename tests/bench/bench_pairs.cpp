@@ -12,7 +12,7 @@
 #include <string>
 
 #include "calib/match.hpp"
-#include "calib/matching/bearing_order.hpp"
+#include "calib/matching/nearest.hpp"
 #include "calib/math/se2.hpp"
 #include "tests/bench/cpu_time.hpp"
 #include "tests/bench/pair_matchers.hpp"

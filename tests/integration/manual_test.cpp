@@ -2,7 +2,7 @@
 // the service in virtual time, and what the command line makes of its answers.
 #include <cstdio>
 
-#include "calib/classical/geometry_errors.hpp"
+#include "calib/classical/rest_to_rest.hpp"
 #include "daemon/cli/manual_moves.hpp"
 #include "tests/integration/service_loop.hpp"
 

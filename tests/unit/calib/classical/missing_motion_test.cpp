@@ -1,4 +1,4 @@
-#include "calib/classical/missing_motion.hpp"
+#include "calib/classical/motion_kinds.hpp"
 
 #include <gtest/gtest.h>
 

@@ -6,7 +6,6 @@
 #include <array>
 #include <cmath>
 
-#include "calib/comparison/fleet.hpp"
 #include "tests/unit/calib/comparison/calibrations.hpp"
 
 namespace odomcalib::calib::comparison::difference_test {

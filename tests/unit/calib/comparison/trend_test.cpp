@@ -6,7 +6,6 @@
 #include <random>
 #include <vector>
 
-#include "calib/comparison/parameter_trends.hpp"
 #include "tests/unit/calib/comparison/calibrations.hpp"
 
 namespace odomcalib::calib::comparison::trend_test {

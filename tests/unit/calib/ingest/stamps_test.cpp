@@ -7,7 +7,6 @@
 
 #include "calib/ingest/even_stamps.hpp"
 #include "calib/ingest/recordings.hpp"
-#include "calib/ingest/tick_stamps.hpp"
 #include "calib/measurement/scan_stamps.hpp"
 #include "tests/unit/calib/selection/selection_support.hpp"
 

@@ -1,5 +1,5 @@
 // Statements of several recordings about their robot.
-#include "calib/ingest/two_robots.hpp"
+#include "calib/ingest/recording_check.hpp"
 
 #include <gtest/gtest.h>
 

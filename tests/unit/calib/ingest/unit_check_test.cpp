@@ -8,8 +8,8 @@
 #include <numbers>
 #include <random>
 
+#include "calib/ingest/frames.hpp"
 #include "calib/ingest/phantom_return.hpp"
-#include "calib/ingest/pose_frame.hpp"
 
 namespace odomcalib::calib::ingest::unit_check_test {
 namespace {

@@ -4,7 +4,6 @@
 
 #include <random>
 
-#include "calib/matching/bearing_order.hpp"
 #include "calib/matching/point_to_point.hpp"
 
 namespace odomcalib::calib::matching::nearest_test {

@@ -1,5 +1,5 @@
 // Matches that slide are told from matches that only scatter, by the scans' places in the map.
-#include "calib/measurement/placed_pairs.hpp"
+#include "calib/measurement/scan_path.hpp"
 
 #include <gtest/gtest.h>
 

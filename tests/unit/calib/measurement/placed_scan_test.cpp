@@ -7,8 +7,6 @@
 #include <random>
 #include <vector>
 
-#include "calib/measurement/placed_poses.hpp"
-
 namespace odomcalib::calib::measurement::placed_scan_test {
 namespace {
 

@@ -1,7 +1,7 @@
 // One edge, and the linear system that edges add up to. Test names begin with the requirement they show.
 #include <gtest/gtest.h>
 
-#include "calib/slam/normal_equations.hpp"
+#include "calib/slam/descent.hpp"
 #include "tests/unit/calib/slam/graph_support.hpp"
 
 namespace odomcalib::calib::slam::graph_factor_test {

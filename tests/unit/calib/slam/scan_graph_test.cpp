@@ -9,7 +9,6 @@
 #include <sstream>
 
 #include "calib/math/median.hpp"
-#include "calib/slam/odometry_correction.hpp"
 #include "proto/file_bytes.hpp"
 #include "tests/unit/calib/room_scans.hpp"
 #include "tests/unit/calib/shared_data.hpp"

@@ -1,5 +1,4 @@
 // The row of an effect states the words that a report has for each of its parameters.
-#include "calib/terms/parameter_meaning.hpp"
 
 #include <gtest/gtest.h>
 

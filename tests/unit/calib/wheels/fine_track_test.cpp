@@ -1,4 +1,4 @@
-#include "calib/wheels/fine_track.hpp"
+#include "calib/wheels/wheel_track.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,5 @@
-// Whether poses that a robot computed from its wheels can be those of two wheels.
+// Whether poses of the reference, and those of odometry, look where they go: a base on two wheels moves along
+// its heading, ahead or back.
 #pragma once
 
 #include <optional>
@@ -13,5 +14,13 @@ namespace odomcalib::calib::ingest {
 /// Error: format, of a frame that is turned, and of a yaw and a place that different sources tell. nullopt
 /// where neither is, and of a recording whose wheel motion is not from odometry.
 std::optional<Error> wrong_odometry_frame(const Recording& recording);
+
+/// The mistake in x, y or yaw without which poses move along their heading; nullopt when they do, hardly move
+/// or no mistake of the table explains it. A frame with z down (north-east-down) moves along its heading too:
+/// only the wheels contradict it. Error: format.
+std::optional<Error> wrong_pose_frame(const Recording& recording);
+
+/// The same of odometry that told the motion of the wheels.
+std::optional<Error> wrong_odometry_heading(const Recording& recording);
 
 }  // namespace odomcalib::calib::ingest
