@@ -1,19 +1,13 @@
 #include "daemon/service/lidar_link.hpp"
 
 #include <algorithm>
-#include <charconv>
 
 #include "daemon/service/settings.hpp"
 #include "drivers/tcp/tcp_stream.hpp"
+#include "proto/number_from.hpp"
 
 namespace odomcalib {
 namespace {
-
-unsigned number_of(const std::string& text) {
-  unsigned number = 0;
-  const auto parsed = std::from_chars(text.data(), text.data() + text.size(), number);
-  return parsed.ec == std::errc{} && parsed.ptr == text.data() + text.size() ? number : 0;
-}
 
 /// "host" to "host:port"; an IPv6 address is in brackets.
 std::string with_port(const std::string& path, unsigned port) {
@@ -38,7 +32,7 @@ Result<LidarLink::Address> LidarLink::address_of(const std::string& device, cons
   if (parts.scheme == "tcp" && type.port != 0) return Address{true, with_port(parts.path, type.port), 0, {}};
   constexpr const char* kCorrect = "correct lidar.device in the configuration";
   if (parts.scheme == "serial" && type.baud != 0) {
-    const unsigned baud = number_of(parts.option("baud", std::to_string(type.baud)));
+    const unsigned baud = number_from<unsigned>(parts.option("baud", std::to_string(type.baud))).value_or(0);
     if (baud == 0)
       return Error{ErrorCode::usage, "\"" + parts.option("baud", "") + "\" is no baud rate", device,
                    kCorrect};

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "drivers/can/settings.hpp"
+#include "proto/number_from.hpp"
 
 namespace odomcalib::drivers {
 namespace {
@@ -27,16 +28,8 @@ std::optional<std::string_view> cut(std::string_view& text, char separator) {
   return head;
 }
 
-template <typename T, typename... Options>
-std::optional<T> parse(std::string_view text, Options... options) {
-  T value{};
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value, options...);
-  if (error != std::errc{} || end != text.data() + text.size()) return std::nullopt;
-  return value;
-}
-
 bool read_id(std::string_view text, CanFrame& frame) {
-  const auto id = parse<std::uint32_t>(text, 16);
+  const auto id = number_from<std::uint32_t>(text, 16);
   if (!id || (text.size() != 3 && text.size() != 8)) return false;
   frame.error = text.size() == 8 && (*id & kErrorFlag) != 0;
   frame.extended = text.size() == 8 && !frame.error;
@@ -48,7 +41,7 @@ bool read_remote(std::string_view text, CanFrame& frame) {
   frame.remote = true;
   text.remove_prefix(1);
   if (text.empty()) return true;
-  const auto length = parse<std::uint8_t>(text, 10);
+  const auto length = number_from<std::uint8_t>(text, 10);
   if (!length || *length > 8) return false;
   frame.length = *length;
   return true;
@@ -59,7 +52,7 @@ bool read_logged_data(std::string_view text, CanFrame& frame) {
     text = text.substr(0, raw_dlc);
   while (!text.empty()) {
     if (text[0] == '.') text.remove_prefix(1);
-    const auto byte = text.size() < 2 ? std::nullopt : parse<std::uint8_t>(text.substr(0, 2), 16);
+    const auto byte = text.size() < 2 ? std::nullopt : number_from<std::uint8_t>(text.substr(0, 2), 16);
     if (!byte || frame.length >= 8) return false;
     frame.data[frame.length++] = *byte;
     text.remove_prefix(2);
@@ -91,8 +84,8 @@ bool is_screen_line(std::string_view line) {
     word = line.substr(0, line.find_first_of(" \t\r"));
     line.remove_prefix(word.size());
     const bool length = word.size() > 2 && word.front() == '[' && word.back() == ']' &&
-                        parse<unsigned>(word.substr(1, word.size() - 2), 10);
-    if (length) return (before.size() == 3 || before.size() == 8) && parse<std::uint32_t>(before, 16);
+                        number_from<unsigned>(word.substr(1, word.size() - 2), 10);
+    if (length) return (before.size() == 3 || before.size() == 8) && number_from<std::uint32_t>(before, 16);
   }
   return false;
 }
@@ -125,7 +118,7 @@ std::optional<CanFrame> parse_candump_line(std::string_view line) {
   if (line.empty() || line[0] != '(') return std::nullopt;
   line.remove_prefix(1);
   const auto time_word = cut(line, ')');
-  const auto time = time_word ? parse<double>(*time_word, std::chars_format::fixed) : std::nullopt;
+  const auto time = time_word ? number_from<double>(*time_word, std::chars_format::fixed) : std::nullopt;
   if (!time || !(std::abs(*time) < kLatest_s) || line.empty() || line[0] != ' ') return std::nullopt;
   line.remove_prefix(1);
   const auto interface = cut(line, ' ');

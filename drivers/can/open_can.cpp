@@ -1,9 +1,9 @@
-#include <charconv>
 
 #include "drivers/can/settings.hpp"
 #include "drivers/can/slcan.hpp"
 #include "drivers/can/socketcan.hpp"
 #include "drivers/serial/port.hpp"
+#include "proto/number_from.hpp"
 
 namespace odomcalib::drivers {
 namespace {
@@ -12,9 +12,7 @@ using namespace can;
 
 Result<unsigned> number(const DeviceString& device, const std::string& key, unsigned otherwise) {
   const std::string text = device.option(key, std::to_string(otherwise));
-  unsigned value = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error == std::errc{} && end == text.data() + text.size()) return value;
+  if (const auto value = number_from<unsigned>(text)) return *value;
   return Error{ErrorCode::usage, "\"" + key + "=" + text + "\" is not a whole number", device.path, ""};
 }
 

@@ -1,8 +1,9 @@
 #include "drivers/can/slcan_parser.hpp"
 
 #include <algorithm>
-#include <charconv>
 #include <string_view>
+
+#include "proto/number_from.hpp"
 
 namespace odomcalib::drivers {
 namespace {
@@ -14,12 +15,7 @@ constexpr std::uint32_t kMaxStandard = 0x7FF;
 constexpr std::uint32_t kMaxExtended = 0x1FFFFFFF;
 
 /// Exactly all characters as hex digits; nullopt otherwise (an empty text too).
-std::optional<std::uint32_t> hex(std::string_view text) {
-  std::uint32_t value = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value, 16);
-  if (error != std::errc{} || end != text.data() + text.size()) return std::nullopt;
-  return value;
-}
+std::optional<std::uint32_t> hex(std::string_view text) { return number_from<std::uint32_t>(text, 16); }
 
 bool read_data(std::string_view text, CanFrame& frame) {
   for (std::size_t i = 0; i < frame.length; ++i) {

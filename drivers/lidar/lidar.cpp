@@ -2,17 +2,30 @@
 
 #include <functional>
 
-#include "drivers/lidar/cola/cola.hpp"
-#include "drivers/lidar/ld06/ld06.hpp"
-#include "drivers/lidar/rplidar/rplidar.hpp"
-#include "drivers/lidar/scip/scip.hpp"
-#include "drivers/lidar/xv11/xv11.hpp"
-#include "drivers/lidar/ydlidar/ydlidar.hpp"
+#include "drivers/lidar/rplidar/packet.hpp"
+#include "drivers/lidar/rplidar/startup.hpp"
+#include "drivers/lidar/scip/parameters.hpp"
+#include "drivers/lidar/ydlidar/packet.hpp"
 
 namespace odomcalib::drivers {
-namespace {
 
 using Made = std::unique_ptr<Lidar>;
+
+// Each in the folder of its name.
+/// @param points_per_s 4500, or 21600 (STL-27L)
+Made make_ld06(const LidarOptions& options, double points_per_s);
+/// @param guessed type of capsules of 84 bytes in a recording that begins without a descriptor; none: their
+/// distances tell
+Made make_rplidar(const LidarOptions& options, rplidar::Startup::Mode mode,
+                  std::optional<rplidar::PacketType> guessed);
+Made make_xv11(const LidarOptions& options);
+/// @param model of ydlidar::models(), which live for ever
+Made make_ydlidar(const LidarOptions& options, const ydlidar::Model& model);
+/// @param known geometry to begin with; what the sensor tells goes before
+Made make_scip(const LidarOptions& options, bool intensities, std::optional<scip::Parameters> known);
+Made make_cola(const LidarOptions& options);
+
+namespace {
 
 /// A type and how its driver is made: a new lidar is one more line of the table.
 struct Entry {
@@ -20,18 +33,16 @@ struct Entry {
   std::function<Made(const LidarOptions& options)> make;
 };
 
-template <typename Driver, typename... Arguments>
-Entry entry(LidarType type, Arguments... arguments) {
-  return {std::move(type), [=](const LidarOptions& options) -> Made {
-            return std::make_unique<Driver>(options, arguments...);
-          }};
+template <typename Make, typename... Arguments>
+Entry entry(LidarType type, Make make, Arguments... arguments) {
+  return {std::move(type), [=](const LidarOptions& options) { return make(options, arguments...); }};
 }
 
 /// "ydlidar" and "ydlidar:MODEL" for every model.
 void add_ydlidars(std::vector<Entry>& out) {
   const auto add = [&](const std::string& name, const ydlidar::Model& model, const std::string& text) {
     out.push_back(
-        entry<Ydlidar>({name, model.baud, model.answers ? 8000U : 0U, true, text}, std::cref(model)));
+        entry({name, model.baud, model.answers ? 8000U : 0U, true, text}, make_ydlidar, std::cref(model)));
   };
   add("ydlidar", *ydlidar::find_model("x4"), "YDLIDAR X4 and recordings of two-byte samples");
   for (const ydlidar::Model& model : ydlidar::models())
@@ -44,35 +55,35 @@ void add_hokuyos(std::vector<Entry>& out) {
     return LidarType{name, 19'200, 10'940, true, "Hokuyo URG, UTM, UST (SCIP 2.0)" + text};
   };
   for (const std::string name : {"hokuyo", "scip"}) {
-    out.push_back(entry<Scip>(type(name, "")));
-    out.push_back(entry<Scip>(type(name + ":intensity", ", with intensities"), true));
+    out.push_back(entry(type(name, ""), make_scip, false, std::nullopt));
+    out.push_back(entry(type(name + ":intensity", ", with intensities"), make_scip, true, std::nullopt));
   }
   for (const std::string model : {"utm30lx", "urg04lx"})
-    out.push_back(entry<Scip>(type("hokuyo:" + model, ", recordings without parameters"), false,
-                              scip::known_parameters(model)));
+    out.push_back(entry(type("hokuyo:" + model, ", recordings without parameters"), make_scip, false,
+                        scip::known_parameters(model)));
 }
 
 std::vector<Entry> make_entries() {
-  using Mode = Rplidar::Mode;
+  using Mode = rplidar::Startup::Mode;
   const std::string rplidar = "SLAMTEC RPLIDAR A, S and C series";
   std::vector<Entry> out = {
-      entry<Ld06>({"ld06", 230'400, 0, true, "LDROBOT LD06, STL-06P"}),
-      entry<Ld06>({"ld19", 230'400, 0, true, "LDROBOT LD19, STL-19P"}),
-      entry<Ld06>({"stl27l", 921'600, 0, true, "LDROBOT STL-27L"}, 21'600.0),
-      entry<Rplidar>({"rplidar", 115'200, 20'108, false, rplidar}),
-      entry<Rplidar>({"rplidar:standard", 115'200, 20'108, false, rplidar + ", uncompressed"},
-                     Mode::standard),
-      entry<Rplidar>({"rplidar:express", 115'200, 20'108, false, rplidar + ", oldest compressed mode"},
-                     Mode::express, rplidar::PacketType::express),
-      entry<Rplidar>(
-          {"rplidar:dense", 115'200, 20'108, false, "recordings of dense capsules that begin late"},
-          Mode::automatic, rplidar::PacketType::dense),
-      entry<Xv11>({"xv11", 115'200, 0, true, "Neato XV-11"}),
+      entry({"ld06", 230'400, 0, true, "LDROBOT LD06, STL-06P"}, make_ld06, 4500.0),
+      entry({"ld19", 230'400, 0, true, "LDROBOT LD19, STL-19P"}, make_ld06, 4500.0),
+      entry({"stl27l", 921'600, 0, true, "LDROBOT STL-27L"}, make_ld06, 21'600.0),
+      entry({"rplidar", 115'200, 20'108, false, rplidar}, make_rplidar, Mode::automatic, std::nullopt),
+      entry({"rplidar:standard", 115'200, 20'108, false, rplidar + ", uncompressed"}, make_rplidar,
+            Mode::standard, std::nullopt),
+      entry({"rplidar:express", 115'200, 20'108, false, rplidar + ", oldest compressed mode"}, make_rplidar,
+            Mode::express, rplidar::PacketType::express),
+      entry({"rplidar:dense", 115'200, 20'108, false, "recordings of dense capsules that begin late"},
+            make_rplidar, Mode::automatic, rplidar::PacketType::dense),
+      entry({"xv11", 115'200, 0, true, "Neato XV-11"}, make_xv11),
   };
   add_ydlidars(out);
   add_hokuyos(out);
   for (const std::string name : {"sick", "cola"})
-    out.push_back(entry<Cola>({name, 0, 2112, true, "SICK LMS1xx, LMS5xx, TiM5xx, TiM7xx, MRS1000 (CoLa)"}));
+    out.push_back(
+        entry({name, 0, 2112, true, "SICK LMS1xx, LMS5xx, TiM5xx, TiM7xx, MRS1000 (CoLa)"}, make_cola));
   return out;
 }
 

@@ -1,9 +1,9 @@
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <initializer_list>
 
 #include "drivers/serial/port.hpp"
+#include "proto/number_from.hpp"
 
 namespace odomcalib::drivers {
 namespace {
@@ -76,9 +76,7 @@ Result<DeviceString> parse_device(const std::string& text) {
 
 Result<unsigned> baud_of(const DeviceString& device) {
   const std::string text = device.option("baud", "");
-  unsigned baud = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), baud);
-  if (error == std::errc{} && end == text.data() + text.size() && baud > 0) return baud;
+  if (const auto baud = number_from<unsigned>(text); baud && *baud > 0) return *baud;
   return Error{ErrorCode::usage,
                text.empty() ? "the baud rate is missing" : "\"" + text + "\" is no baud rate",
                device.scheme + ":" + device.path, "add it to the device, e.g. ?baud=57600"};

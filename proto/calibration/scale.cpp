@@ -1,24 +1,17 @@
 #include "proto/calibration/scale.hpp"
 
-#include <charconv>
 #include <cmath>
 #include <optional>
 #include <string_view>
 
 #include "proto/calibration/calibration.hpp"
+#include "proto/number_from.hpp"
 
 namespace odomcalib {
 namespace {
 
 /// Beyond these a number is no scale of a reference but a unit, or a slip of the pen. Chosen.
 constexpr double kLeast = 0.5, kMost = 2.0, kMostDeviation = 0.1;
-
-std::optional<double> whole_number(std::string_view text) {
-  double value = 0.0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error != std::errc() || end != text.data() + text.size()) return std::nullopt;
-  return value;
-}
 
 }  // namespace
 
@@ -31,9 +24,9 @@ Result<Scale> scale_from_text(const std::string& text) {
   constexpr std::string_view kBetween = "+-";
   const std::size_t at = text.find(kBetween);
   const std::string_view all = text;
-  const auto value = whole_number(all.substr(0, at));
+  const auto value = number_from<double>(all.substr(0, at));
   const auto deviation =
-      at == std::string::npos ? std::optional(0.0) : whole_number(all.substr(at + kBetween.size()));
+      at == std::string::npos ? std::optional(0.0) : number_from<double>(all.substr(at + kBetween.size()));
   const bool is_scale = value && deviation && *value >= kLeast && *value <= kMost && *deviation >= 0.0 &&
                         *deviation <= kMostDeviation;
   if (!is_scale)

@@ -1,6 +1,9 @@
 #include "drivers/base/cia402/pdo_dates.hpp"
 
+#include <algorithm>
+
 #include "drivers/base/cia402/settings.hpp"
+#include "drivers/base/motion/settings.hpp"
 
 namespace odomcalib::drivers {
 namespace {
@@ -12,6 +15,23 @@ constexpr std::uint8_t kOnEvent = 254;    // 254, 255: on change or timer
 double frame_time(const CanFrame& frame, double bitrate) { return (47.0 + 8.0 * frame.length) / bitrate; }
 
 }  // namespace
+
+using namespace motion;
+
+double TimerDates::date(double arrival) {
+  // A frame that was lost is a whole period of lateness, to be distinguished from a host that was held up:
+  // what comes after a pause of the host is soon in time again, so SampleClock gives up the old beat only
+  // after a quarter of a second.
+  const auto stamp = clock_.on_packet(period_s_, arrival);
+  if (!stamp.continuous) {
+    usual_ = 0.0;
+    return arrival;
+  }
+  const double late = arrival - stamp.t;
+  if (late > kPrompt_s) return std::min(arrival, stamp.t + usual_);
+  usual_ += kGain * (late - usual_);
+  return arrival;
+}
 
 double PdoDates::date(const canopen::Pdo& pdo, const CanFrame& frame) {
   const bool on_sync = pdo.type >= 1 && pdo.type <= kMostSyncs;

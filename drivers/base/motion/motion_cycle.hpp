@@ -10,7 +10,7 @@
 
 #include "drivers/base/controller.hpp"
 #include "drivers/base/motion/stuck_watch.hpp"
-#include "drivers/base/motion/tick_pairing.hpp"
+#include "drivers/base/motion/wheel_counts.hpp"
 
 namespace odomcalib::drivers {
 

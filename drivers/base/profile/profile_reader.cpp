@@ -1,32 +1,25 @@
 #include "drivers/base/profile/profile_reader.hpp"
 
-#include <charconv>
 #include <cmath>
 #include <sstream>
+
+#include "proto/number_from.hpp"
 
 namespace odomcalib::drivers {
 namespace {
 
-template <typename T>
-std::optional<T> parse_number(std::string_view text, int base) {
-  T value{};
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value, base);
-  if (error != std::errc{} || end != text.data() + text.size()) return std::nullopt;
-  return value;
-}
-
 std::optional<canopen::ObjectAddress> parse_object(std::string_view text) {
   const std::size_t colon = text.find(':');
-  const auto index = parse_number<std::uint16_t>(text.substr(0, colon), 16);
+  const auto index = number_from<std::uint16_t>(text.substr(0, colon), 16);
   const auto sub = colon == std::string_view::npos ? std::optional<std::uint8_t>(0)
-                                                   : parse_number<std::uint8_t>(text.substr(colon + 1), 16);
+                                                   : number_from<std::uint8_t>(text.substr(colon + 1), 16);
   if (!index || !sub) return std::nullopt;
   return canopen::ObjectAddress{*index, *sub};
 }
 
 std::optional<canopen::NumberType> parse_type(std::string_view text) {
   if (text.size() < 2 || (text[0] != 'u' && text[0] != 'i')) return std::nullopt;
-  const auto bits = parse_number<int>(text.substr(1), 10);
+  const auto bits = number_from<int>(text.substr(1), 10);
   if (!bits || (*bits != 8 && *bits != 16 && *bits != 32 && *bits != 64)) return std::nullopt;
   return canopen::NumberType{static_cast<std::uint8_t>(*bits / 8), text[0] == 'i'};
 }
@@ -35,7 +28,7 @@ std::optional<canopen::PdoEntry> parse_entry(std::string_view text) {
   const std::size_t slash = text.find('/');
   if (slash == std::string_view::npos) return std::nullopt;
   const auto object = parse_object(text.substr(0, slash));
-  const auto bits = parse_number<std::uint8_t>(text.substr(slash + 1), 10);
+  const auto bits = number_from<std::uint8_t>(text.substr(slash + 1), 10);
   if (!object || !bits || *bits == 0 || *bits > 64 || *bits % 8 != 0) return std::nullopt;
   return canopen::PdoEntry{*object, *bits};
 }

@@ -1,9 +1,27 @@
-#include "drivers/base/segway/segway.hpp"
-
+// Segway RMP: CAN, 11 bit, big-endian words. Read only: no command time-out of the device is documented, so
+// it is never enabled. Source: Segway RMP interface guide.
 #include <algorithm>
+
+#include "drivers/base/speed/speed_protocol.hpp"
 
 namespace odomcalib::drivers {
 namespace {
+
+class Segway final : public SpeedProtocol {
+ public:
+  explicit Segway(const Profile& /*profile*/) {}
+
+  [[nodiscard]] Wire wire() const override { return Wire::can; }
+  void on_frame(const CanFrame& frame) override;
+  void greet(double /*now*/) override {}
+  void command(double /*left_rad_s*/, double /*right_rad_s*/) override {}
+  [[nodiscard]] Counters counters() const override;
+
+  static const std::vector<WireMessage>& messages();
+
+ private:
+  std::uint64_t frames_in_ = 0, frames_used_ = 0, bad_frames_ = 0, other_frames_ = 0;
+};
 
 constexpr std::uint32_t kPositions = 0x403;
 constexpr double kCountsPerMetrePerSecond = 332.0;  // RMP200
@@ -69,6 +87,10 @@ Counters Segway::counters() const {
           {"frames_used", frames_used_},
           {"bad_frames", bad_frames_},
           {"other_frames", other_frames_}};
+}
+
+std::unique_ptr<SpeedProtocol> make_segway(const Profile& profile) {
+  return std::make_unique<Segway>(profile);
 }
 
 }  // namespace odomcalib::drivers

@@ -11,7 +11,7 @@
 
 #include "drivers/base/controller.hpp"
 #include "drivers/base/motion/settings.hpp"
-#include "drivers/base/motion/tick_pairing.hpp"
+#include "drivers/base/motion/wheel_counts.hpp"
 #include "drivers/base/profile/profile.hpp"
 #include "drivers/wire_table.hpp"
 

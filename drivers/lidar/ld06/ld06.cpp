@@ -1,15 +1,54 @@
-#include "drivers/lidar/ld06/ld06.hpp"
-
+// LDROBOT LD06, LD19 (STL-06P, STL-19P): one-way serial, clockwise, a packet of 12 points each 2.67 ms.
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
+#include <vector>
 
+#include "drivers/device_clock.hpp"
+#include "drivers/lidar/common/sweep.hpp"
 #include "drivers/lidar/common/units.hpp"
+#include "drivers/lidar/ld06/packet.hpp"
 #include "drivers/lidar/ld06/settings.hpp"
+#include "drivers/lidar/lidar.hpp"
 
 namespace odomcalib::drivers {
 
 using namespace ld06;
+
+namespace {
+
+class Ld06 final : public Lidar {
+ public:
+  Ld06(const LidarOptions& options, double points_per_s);
+
+  void on_bytes(std::span<const std::uint8_t> bytes, double now) override;
+  std::vector<LidarScan> take_scans() override { return sweep_.take_scans(); }
+  void reset() override;
+  void finish() override { sweep_.interrupt(); }
+  /// Those of the packets and of the sweep, and lost_packets.
+  [[nodiscard]] Counters counters() const override;
+  [[nodiscard]] Counters rejected() const override;
+
+ private:
+  double date();
+  void begin_turn();
+  void add(const ld06::Packet& packet, double t_end);
+  void report_packet(const ld06::Packet& packet) const;
+
+  LidarOptions options_;
+  double nominal_period_;  // s between packets
+  ld06::PacketFinder finder_;
+  DeviceClock clock_;
+  std::optional<double> last_end_;  // s, filtered end of the last packet on the device's clock
+  double host_offset_ = 0.0;        // s, of the turn in progress
+  double period_;                   // s between packets, measured
+  double last_angle_ = 0.0;         // degrees, clockwise
+  Sweep sweep_;
+  std::uint64_t lost_packets_ = 0;
+};
+
+}  // namespace
 
 Ld06::Ld06(const LidarOptions& options, double points_per_s)
     : options_(options),
@@ -102,5 +141,9 @@ Counters Ld06::counters() const {
 }
 
 Counters Ld06::rejected() const { return sweep_.rejected(finder_.frames().rejected()); }
+
+std::unique_ptr<Lidar> make_ld06(const LidarOptions& options, double points_per_s) {
+  return std::make_unique<Ld06>(options, points_per_s);
+}
 
 }  // namespace odomcalib::drivers

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "drivers/lidar/common/hex_text.hpp"
+#include "drivers/clean_text.hpp"
 #include "drivers/lidar/rplidar/commands.hpp"
 #include "drivers/lidar/rplidar/settings.hpp"
 

@@ -3,7 +3,7 @@
 #include <array>
 #include <cstdio>
 
-#include "drivers/lidar/common/hex_text.hpp"
+#include "drivers/clean_text.hpp"
 #include "drivers/lidar/rplidar/commands.hpp"
 #include "drivers/lidar/rplidar/packet.hpp"
 #include "drivers/lidar/rplidar/settings.hpp"

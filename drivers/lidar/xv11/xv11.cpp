@@ -1,10 +1,39 @@
-#include "drivers/lidar/xv11/xv11.hpp"
+// Neato XV-11: one-way serial, counter-clockwise, 360 readings a turn, no clock of its own.
+#include <optional>
+#include <vector>
 
+#include "drivers/device_clock.hpp"
+#include "drivers/lidar/common/sweep.hpp"
 #include "drivers/lidar/common/units.hpp"
+#include "drivers/lidar/lidar.hpp"
+#include "drivers/lidar/xv11/packet.hpp"
 #include "drivers/lidar/xv11/settings.hpp"
 
 namespace odomcalib::drivers {
 namespace {
+
+class Xv11 final : public Lidar {
+ public:
+  explicit Xv11(const LidarOptions& options);
+
+  void on_bytes(std::span<const std::uint8_t> bytes, double now) override;
+  std::vector<LidarScan> take_scans() override { return sweep_.take_scans(); }
+  void reset() override;
+  void finish() override { sweep_.interrupt(); }
+  [[nodiscard]] Counters counters() const override;
+  [[nodiscard]] Counters rejected() const override { return sweep_.rejected(finder_.frames().rejected()); }
+
+ private:
+  void on_packet(const xv11::Packet& packet, double now);
+  void report_packet(const xv11::Packet& packet) const;
+
+  LidarOptions options_;
+  xv11::PacketFinder finder_;
+  SampleClock clock_;
+  Sweep sweep_;
+  std::optional<unsigned> last_index_;
+};
+
 constexpr double kDegreesPerPacket = 4.0;
 
 }  // namespace
@@ -74,5 +103,7 @@ Counters Xv11::counters() const {
   sweep_.count_into(all);
   return all;
 }
+
+std::unique_ptr<Lidar> make_xv11(const LidarOptions& options) { return std::make_unique<Xv11>(options); }
 
 }  // namespace odomcalib::drivers

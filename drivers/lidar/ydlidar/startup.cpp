@@ -1,6 +1,6 @@
 #include "drivers/lidar/ydlidar/startup.hpp"
 
-#include "drivers/lidar/common/hex_text.hpp"
+#include "drivers/clean_text.hpp"
 #include "drivers/lidar/ydlidar/settings.hpp"
 
 namespace odomcalib::drivers::ydlidar {

@@ -1,13 +1,56 @@
-#include "drivers/lidar/ydlidar/ydlidar.hpp"
-
+// YDLIDAR, triangle protocol: serial or TCP, clockwise, no clock of its own.
 #include <cmath>
+#include <optional>
+#include <string>
+#include <vector>
 
 #include "drivers/clean_text.hpp"
-#include "drivers/lidar/common/hex_text.hpp"
+#include "drivers/device_clock.hpp"
+#include "drivers/lidar/common/sweep.hpp"
 #include "drivers/lidar/common/units.hpp"
+#include "drivers/lidar/lidar.hpp"
+#include "drivers/lidar/ydlidar/packet.hpp"
 #include "drivers/lidar/ydlidar/settings.hpp"
+#include "drivers/lidar/ydlidar/startup.hpp"
 
 namespace odomcalib::drivers {
+namespace {
+
+class Ydlidar final : public Lidar {
+ public:
+  Ydlidar(const LidarOptions& options, const ydlidar::Model& model);
+
+  void on_bytes(std::span<const std::uint8_t> bytes, double now) override;
+  std::vector<LidarScan> take_scans() override { return sweep_.take_scans(); }
+  std::vector<std::uint8_t> take_output() override { return startup_.take_output(); }
+  [[nodiscard]] std::vector<std::uint8_t> stop_bytes() const override;
+  void reset() override;
+  void finish() override { sweep_.interrupt(); }
+  [[nodiscard]] Counters counters() const override;
+  [[nodiscard]] Counters rejected() const override { return sweep_.rejected(finder_.frames().rejected()); }
+  [[nodiscard]] std::string identity() const override {
+    return startup_.identity().empty() ? reported_name_ : startup_.identity();
+  }
+  [[nodiscard]] std::optional<Error> problem() const override;
+
+ private:
+  void on_packet(const ydlidar::Packet& packet, double now);
+  double date(const ydlidar::Packet& packet, double now);
+  [[nodiscard]] double step_of(const ydlidar::Packet& packet) const;
+  void report_packet(const ydlidar::Packet& packet) const;
+  [[nodiscard]] std::optional<Error> wrong_kind() const;
+
+  LidarOptions options_;
+  const ydlidar::Model& model_;
+  ydlidar::PacketFinder finder_;
+  ydlidar::Startup startup_;
+  SampleClock clock_;
+  Sweep sweep_;
+  double usual_step_ = 0.0;    // degrees between samples
+  std::string reported_name_;  // of a model that sends it unasked
+};
+
+}  // namespace
 
 Ydlidar::Ydlidar(const LidarOptions& options, const ydlidar::Model& model)
     : options_(options),
@@ -127,6 +170,10 @@ std::optional<Error> Ydlidar::problem() const {
                  std::string("lidar.type says model ") + model_.name +
                      "; a model with another sample format does this: correct lidar.type"};
   return startup_.problem();
+}
+
+std::unique_ptr<Lidar> make_ydlidar(const LidarOptions& options, const ydlidar::Model& model) {
+  return std::make_unique<Ydlidar>(options, model);
 }
 
 }  // namespace odomcalib::drivers

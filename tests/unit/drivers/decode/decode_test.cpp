@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "drivers/can/candump.hpp"
-#include "drivers/can/socketcan_frame.hpp"
+#include "drivers/can/socketcan.hpp"
 #include "tests/unit/drivers/decoded.hpp"
 #include "tests/unit/drivers/test_support.hpp"
 

@@ -1,4 +1,4 @@
-#include "drivers/lidar/ld06/ld06.hpp"
+#include "drivers/lidar/ld06/packet.hpp"
 
 #include <gtest/gtest.h>
 
@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "drivers/decode/decode.hpp"
+#include "drivers/lidar/lidar.hpp"
 #include "tests/unit/drivers/test_support.hpp"
 
 namespace odomcalib::drivers::ld06_test {
@@ -137,7 +138,9 @@ TEST(Ld06, rejects_angles_and_stamps_out_of_range) {
   }
 }
 
-std::vector<Scan> run(Ld06& lidar, unsigned packets, double lag_s = 0.001, double first_device_s = 0.0) {
+std::unique_ptr<Lidar> make_ld06() { return std::move(make_lidar("ld06", {230400})).value(); }
+
+std::vector<Scan> run(Lidar& lidar, unsigned packets, double lag_s = 0.001, double first_device_s = 0.0) {
   std::vector<Scan> scans;
   for (unsigned k = 0; k < packets; ++k) {
     lidar.on_bytes(packet_number(k, first_device_s), 100.0 + kPeriod * (k + 1) + kTransmission + lag_s);
@@ -148,7 +151,8 @@ std::vector<Scan> run(Ld06& lidar, unsigned packets, double lag_s = 0.001, doubl
 }
 
 TEST(Ld06, drops_the_first_partial_turn_and_publishes_whole_ones) {
-  Ld06 lidar({230400});
+  const auto made = make_ld06();
+  Lidar& lidar = *made;
   const auto scans = run(lidar, 400);
   ASSERT_EQ(scans.size(), 9U);
   EXPECT_EQ(lidar.counters()["partial_scans"], 1U);
@@ -160,7 +164,8 @@ TEST(Ld06, drops_the_first_partial_turn_and_publishes_whole_ones) {
 }
 
 TEST(Ld06, turns_clockwise_angles_into_negative_ones) {
-  Ld06 lidar({230400});
+  const auto made = make_ld06();
+  Lidar& lidar = *made;
   const Scan scan = run(lidar, 200).at(0);
   EXPECT_LT(scan.angle_increment, 0.0);
   for (std::size_t i = 1; i < scan.angles.size(); ++i) EXPECT_LT(scan.angles[i], scan.angles[i - 1]);
@@ -168,7 +173,8 @@ TEST(Ld06, turns_clockwise_angles_into_negative_ones) {
 }
 
 TEST(Ld06, dates_beams_by_the_device_clock_within_a_millisecond) {
-  Ld06 lidar({230400});
+  const auto made = make_ld06();
+  Lidar& lidar = *made;
   const auto scans = run(lidar, 8000, 0.0, 25.0);  // 21 s, the stamp wraps at 30 s
   ASSERT_GT(scans.size(), 200U);
   for (const Scan& scan : scans) {
@@ -181,7 +187,8 @@ TEST(Ld06, dates_beams_by_the_device_clock_within_a_millisecond) {
 
 TEST(Ld06, follows_the_least_delayed_bytes) {
   auto random = test::seeded(5);
-  Ld06 lidar({230400});
+  const auto made = make_ld06();
+  Lidar& lidar = *made;
   std::vector<Scan> scans;
   for (unsigned k = 0; k < 4000; ++k) {
     const double jitter = 0.016 * static_cast<double>(random() % 1000) / 1000.0;  // a USB latency timer
@@ -198,7 +205,8 @@ TEST(Ld06, follows_the_least_delayed_bytes) {
 // A busy host reads late, in pieces of what the port holds: that says nothing about when the beams were
 // taken.
 TEST(Ld06, late_reads_in_pieces_tear_no_turn_apart) {
-  Ld06 lidar({230400});
+  const auto made = make_ld06();
+  Lidar& lidar = *made;
   ByteString waiting;
   std::size_t published = 0;
   for (unsigned k = 0; k < 400; ++k) {
@@ -219,7 +227,8 @@ TEST(Ld06, late_reads_in_pieces_tear_no_turn_apart) {
 }
 
 TEST(Ld06, counts_a_turn_with_a_hole_instead_of_publishing_it) {
-  Ld06 lidar({230400});
+  const auto made = make_ld06();
+  Lidar& lidar = *made;
   unsigned published = 0;
   for (unsigned k = 0; k < 375; ++k) {
     if (k >= 100 && k < 106) continue;  // 16 ms lost
@@ -234,7 +243,8 @@ TEST(Ld06, counts_a_turn_with_a_hole_instead_of_publishing_it) {
 }
 
 TEST(Ld06, what_the_sensor_did_not_see_is_no_reading) {
-  Ld06 lidar({230400});
+  const auto made = make_ld06();
+  Lidar& lidar = *made;
   std::vector<Scan> scans;
   for (unsigned k = 0; k < 200; ++k) {
     const unsigned end_ms = static_cast<unsigned>(kPeriod * (k + 1) * 1000.0);
@@ -247,7 +257,8 @@ TEST(Ld06, what_the_sensor_did_not_see_is_no_reading) {
 }
 
 TEST(Ld06, starts_anew_after_a_reset) {
-  Ld06 lidar({230400});
+  const auto made = make_ld06();
+  Lidar& lidar = *made;
   (void)run(lidar, 60);
   lidar.reset();
   expect_accounted(lidar.counters());

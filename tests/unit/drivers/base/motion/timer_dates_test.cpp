@@ -1,5 +1,5 @@
 // Frames of a drive's timer, read by a host that is sometimes held up.
-#include "drivers/base/motion/timer_dates.hpp"
+#include "drivers/base/cia402/pdo_dates.hpp"
 
 #include <gtest/gtest.h>
 
