@@ -2,8 +2,11 @@
 // Nothing here reads a clock or a device.
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <string>
+#include <unordered_set>
+#include <utility>
 #include <vector>
 
 #include "daemon/routines/settings.hpp"
@@ -95,5 +98,23 @@ struct Preview {
 
 /// Drives the plan with an ideal robot from the origin.
 Preview preview(const Plan& plan);
+
+/// Poses along a way, each once.
+class DistinctPoses {
+ public:
+  /// @param place m and @param heading rad, of poses that are one
+  DistinctPoses(double place, double heading) : place_(place), heading_(heading) {}
+
+  void add(const Pose& pose);
+  std::vector<Pose> take() && { return std::move(poses_); }
+
+ private:
+  [[nodiscard]] std::uint64_t cell_of(const Pose& pose) const;
+
+  double place_, heading_;
+  std::unordered_set<std::uint64_t> taken_;
+  std::uint64_t last_ = 0;
+  std::vector<Pose> poses_;
+};
 
 }  // namespace odomcalib::routines

@@ -1,7 +1,6 @@
 // Numbers that decide how guided motions are driven and judged, each once, with its unit and its origin:
 // derived (from what), or chosen (for what reason; where none is given, no comparison with other values is
-// known). What each pattern and manoeuvre drives is its own layout and stands there (pattern.cpp,
-// manoeuvres.cpp).
+// known). What each pattern and manoeuvre drives is its own layout and stands there (manoeuvres.cpp).
 #pragma once
 
 namespace odomcalib::routines::settings {

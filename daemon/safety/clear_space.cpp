@@ -5,7 +5,7 @@
 #include <cmath>
 #include <utility>
 
-#include "daemon/routines/distinct_poses.hpp"
+#include "daemon/routines/motion.hpp"
 #include "daemon/safety/settings.hpp"
 
 namespace odomcalib::safety {

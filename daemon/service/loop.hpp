@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "daemon/service/loop_guard.hpp"
+#include "daemon/service/loop_watch.hpp"
 #include "daemon/service/parts/robot_parts.hpp"
 #include "daemon/service/tasks/task.hpp"
 

@@ -5,6 +5,7 @@
 #include "daemon/routines/wiring.hpp"
 #include "daemon/service/dead_reckoning.hpp"
 #include "daemon/service/leg_report.hpp"
+#include "daemon/service/status_report.hpp"
 #include "proto/angles.hpp"
 
 namespace odomcalib {
@@ -77,23 +78,20 @@ ordered_json json_of(const routines::Nudge& nudge, const routines::Wiring& wirin
   return body;
 }
 
-ordered_json row(const routines::Wiring& wiring, const std::string& found, const std::string& remedy) {
-  return {{"name", "wiring"}, {"outcome", name_of(wiring.outcome)}, {"found", found}, {"remedy", remedy}};
-}
-
 /// Rows like those of the other checks. Alternatives follow each other.
 void add_rows(const routines::Wiring& wiring, ordered_json& checks) {
   using Outcome = routines::Wiring::Outcome;
+  const auto add = [&](const std::string& found, const std::string& remedy) {
+    checks.push_back(check_row("wiring", name_of(wiring.outcome), found, remedy));
+  };
   if (wiring.outcome == Outcome::unclear)
-    checks.push_back(row(wiring, wiring.why, "see that the wheels turn freely and walls are in sight"));
+    add(wiring.why, "see that the wheels turn freely and walls are in sight");
   if (wiring.outcome == Outcome::good)
-    checks.push_back(row(wiring,
-                         fmt::format("sides and signs as configured, lidar yaw about {:.0f} deg",
-                                     kDegrees * wiring.lidar_yaw.value_or(0.0)),
-                         ""));
+    add(fmt::format("sides and signs as configured, lidar yaw about {:.0f} deg",
+                    kDegrees * wiring.lidar_yaw.value_or(0.0)),
+        "");
   for (std::size_t i = 0; i < wiring.explanations.size(); ++i)
-    for (const auto& fault : wiring.explanations[i])
-      checks.push_back(row(wiring, (i == 0 ? "" : "or: ") + fault.what, fault.remedy));
+    for (const auto& fault : wiring.explanations[i]) add((i == 0 ? "" : "or: ") + fault.what, fault.remedy);
 }
 
 }  // namespace

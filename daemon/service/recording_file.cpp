@@ -6,7 +6,7 @@
 #include <limits>
 #include <optional>
 
-#include "daemon/service/retention.hpp"
+#include "daemon/service/state_folder.hpp"
 #include "proto/recording/recording_log.hpp"
 
 namespace odomcalib {

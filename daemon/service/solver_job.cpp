@@ -9,8 +9,8 @@
 #include <thread>
 
 #include "daemon/service/json_text.hpp"
-#include "daemon/service/retention.hpp"
 #include "daemon/service/settings.hpp"
+#include "daemon/service/state_folder.hpp"
 #include "proto/control/control.hpp"
 
 namespace odomcalib {

@@ -1,8 +1,12 @@
 // The state directory: one daemon at a time writes to it.
 #pragma once
 
+#include <cstddef>
+#include <cstdint>
 #include <filesystem>
 #include <optional>
+#include <string>
+#include <vector>
 
 #include "proto/result.hpp"
 
@@ -25,5 +29,15 @@ class StateFolder {
   int lock_ = -1;
   std::optional<Error> read_only_;
 };
+
+/// How much of the past is kept on the disk.
+struct Retention {
+  std::uintmax_t most_bytes = 0;
+  std::size_t most = 0;  ///< files; those whose names differ in the extension only count as one
+};
+
+/// Removes the oldest files of a folder until the others are no more than that; the newest stays however
+/// large it is. What cannot be removed is passed over. @return names without extension of what was removed
+std::vector<std::string> keep_newest(const std::filesystem::path& folder, const Retention& retention);
 
 }  // namespace odomcalib

@@ -14,17 +14,14 @@ namespace odomcalib {
 namespace {
 
 ordered_json check(const std::string& name, bool good, const std::string& found, const std::string& remedy) {
-  return {
-      {"name", name}, {"outcome", good ? "ok" : "fail"}, {"found", found}, {"remedy", good ? "" : remedy}};
+  return check_row(name, good ? "ok" : "fail", found, good ? "" : remedy);
 }
 
 /// A blind area of the lidar is no failure: it is to be looked at by somebody.
 ordered_json view_check(const std::vector<safety::Sector>& blind) {
   if (blind.empty()) return check("lidar view", true, "all around", "");
-  return {{"name", "lidar view"},
-          {"outcome", "warn"},
-          {"found", "blind from " + safety::text_of(blind) + " (0 is ahead, 90 left)"},
-          {"remedy", "moves that go there need somebody who vouches for them: see that this area is free"}};
+  return check_row("lidar view", "warn", "blind from " + safety::text_of(blind) + " (0 is ahead, 90 left)",
+                   "moves that go there need somebody who vouches for them: see that this area is free");
 }
 
 /// Later edits count from the next start on: a robot that moves is not configured anew.
@@ -34,11 +31,9 @@ std::optional<ordered_json> config_check(const Config& config) {
   const auto written = std::filesystem::last_write_time(config.file, error);
   if (!error && written == config.written)
     return check("configuration", true, "as the daemon has read it", "");
-  return ordered_json{
-      {"name", "configuration"},
-      {"outcome", "warn"},
-      {"found", config.file.string() + (error ? ": " + error.message() : " was edited since the start")},
-      {"remedy", "systemctl restart odomcalib"}};
+  return check_row("configuration", "warn",
+                   config.file.string() + (error ? ": " + error.message() : " was edited since the start"),
+                   "systemctl restart odomcalib");
 }
 
 /// Refusals of the controller are stated here too, not in the journal alone.
@@ -87,10 +82,7 @@ ordered_json check_disk(const std::filesystem::path& folder, const StateFolder& 
 
 /// No failure: on a machine that does nothing else the loop is in time all the same.
 ordered_json scheduling_check(const Urgency& urgency) {
-  return {{"name", "scheduling"},
-          {"outcome", urgency.remedy.empty() ? "ok" : "warn"},
-          {"found", urgency.found},
-          {"remedy", urgency.remedy}};
+  return check_row("scheduling", urgency.remedy.empty() ? "ok" : "warn", urgency.found, urgency.remedy);
 }
 
 ordered_json json_of(const LoopWatch::Longest& turn) {
@@ -173,11 +165,8 @@ std::optional<ordered_json> replaced_check(const Drive& drive, const WriteBack& 
   const std::string found = replaced_text(drive, write_back);
   if (found.empty()) return std::nullopt;
   const auto former = write_back.of_former_controller(device_of(drive.controller()));
-  return ordered_json{
-      {"name", "replaced"},
-      {"outcome", "warn"},
-      {"found", found},
-      {"remedy", "the last verified values: odomcalibctl rollback --to " + former->id + " --replaced"}};
+  return check_row("replaced", "warn", found,
+                   "the last verified values: odomcalibctl rollback --to " + former->id + " --replaced");
 }
 
 ordered_json robot_report(const Drive& drive) {
@@ -217,6 +206,11 @@ ordered_json loop_report(const Urgency& urgency, const LoopWatch& loop) {
 }
 
 }  // namespace
+
+ordered_json check_row(const std::string& name, const std::string& outcome, const std::string& found,
+                       const std::string& remedy) {
+  return {{"name", name}, {"outcome", outcome}, {"found", found}, {"remedy", remedy}};
+}
 
 std::string activity(const RobotParts& parts, const Task* task) {
   if (parts.ending) return parts.write_back.busy() ? "ending: reading or writing parameters" : "ending";

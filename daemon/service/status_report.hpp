@@ -15,7 +15,10 @@ ordered_json status_report(const RobotParts& parts, const Task* task);
 ordered_json scan_report(const Surroundings& surroundings, double now);
 /// The configuration in force.
 ordered_json description(const Config& config);
-/// Rows {name, outcome, found, remedy}.
+/// A row of a check. @param outcome "ok", "warn" or "fail"
+ordered_json check_row(const std::string& name, const std::string& outcome, const std::string& found,
+                       const std::string& remedy);
+/// Rows of what is possible.
 ordered_json check_report(const RobotParts& parts);
 /// @param calibration whose values are shown beside those in force
 ordered_json parameter_report(const Drive& drive, const Calibrator& calibrator,

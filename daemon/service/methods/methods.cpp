@@ -2,10 +2,11 @@
 
 #include <algorithm>
 #include <array>
+#include <regex>
 
 #include "daemon/service/call_parameters.hpp"
 #include "daemon/service/status_report.hpp"
-#include "proto/control/signatures.hpp"
+#include "proto/control/control.hpp"
 
 namespace odomcalib {
 namespace {
@@ -49,6 +50,21 @@ const Method& method_of(const std::string& name, const ordered_json& parameters)
   return found == kMethods.end() ? kUnknown : *found;
 }
 
+/// Names of a method's parameters, read from the description of the interface; empty: it has none.
+std::vector<std::string> parameters_of(const std::string& method) {
+  const std::string_view interface = control::interface_description();
+  const std::string head = "\nmethod " + method + "(";
+  const std::size_t begin = interface.find(head);
+  if (begin == std::string_view::npos) return {};
+  const std::string parameters(
+      interface.substr(begin + head.size(), interface.find(')', begin) - begin - head.size()));
+  static const std::regex kName(R"((\w+)\s*:)");
+  std::vector<std::string> names;
+  for (std::sregex_iterator it(parameters.begin(), parameters.end(), kName), end; it != end; ++it)
+    names.push_back((*it)[1].str());
+  return names;
+}
+
 std::optional<Error> not_now(const Method& method, const Context& context, bool stopped_since) {
   if (context.parts.ending && method.when != When::always)
     return Error{ErrorCode::refused, "the daemon is ending", "odomcalibd",
@@ -71,7 +87,7 @@ Outcome begin(const Method& method, const Context& context, const Request& reque
 
 Outcome outcome_of(const Method& method, Context& context, const Call& call) {
   if (method.when == When::when_idle) {  // it moves the robot, or writes
-    auto known = control::parameters_of(method.name, control::interface_description());
+    auto known = parameters_of(method.name);
     known.emplace_back("lease");  // does no harm where none is needed
     CallParameters given(call.parameters);
     given.only(known);

@@ -7,7 +7,6 @@
 #include <cmath>
 
 #include "daemon/routines/manoeuvres.hpp"
-#include "daemon/routines/pattern.hpp"
 #include "daemon/routines/plans.hpp"
 #include "daemon/routines/settings.hpp"
 #include "daemon/routines/wiring.hpp"

@@ -2,7 +2,6 @@
 #include "daemon/service/call_parameters.hpp"
 #include "daemon/service/methods/methods.hpp"
 #include "daemon/service/status_report.hpp"
-#include "daemon/service/tasks/proof_task.hpp"
 #include "daemon/service/tasks/reading_task.hpp"
 #include "daemon/service/tasks/write_task.hpp"
 #include "daemon/service/write_gate.hpp"

@@ -1,15 +1,45 @@
-// A client's write-back: new values into the controller, or what had been there before.
+// Tasks that write to the controller.
 #pragma once
 
 #include <memory>
 #include <optional>
 #include <string>
 
-#include "daemon/service/tasks/parameter_task.hpp"
+#include "daemon/service/calibrator.hpp"
+#include "daemon/service/parts/applied_calibration.hpp"
+#include "daemon/service/parts/drive.hpp"
+#include "daemon/service/parts/write_back.hpp"
+#include "daemon/service/tasks/task.hpp"
+#include "daemon/writeback/background.hpp"
 #include "daemon/writeback/rounding.hpp"
 
 namespace odomcalib {
 
+/// Their common part: a client's stop or end does not reach them.
+class ParameterTask : public Task {
+ public:
+  /// Parts that the tasks work on; all of them outlive the tasks.
+  struct Parts {
+    WriteBack& write_back;
+    const Drive& drive;
+    AppliedCalibration& applied;
+    const Calibrator& calibrator;
+    Outbox& outbox;
+    Background& disk;
+  };
+  ParameterTask(const Parts& parts, const Caller& waits) : Task(waits), parts_(parts) {}
+
+  [[nodiscard]] const char* part() const override { return "write-back"; }
+  [[nodiscard]] std::string activity() const override { return "reading or writing parameters"; }
+  /// Values are written wholly or not at all: what has begun goes on.
+  void stop(double /*now*/) override {}
+  void abandoned(double /*now*/) override {}
+
+ protected:
+  const Parts parts_;
+};
+
+/// A client's write-back: new values into the controller, or what had been there before.
 class WriteTask final : public ParameterTask {
  public:
   struct Order {
@@ -55,5 +85,22 @@ ordered_json write_reply(const ParameterTask::Parts& parts, const WriteReport& r
 
 /// The end of a write-back as the last turn of the task that waited for it.
 TaskTurn turn_of(const ParameterTask::Parts& parts, const WriteEnd& end);
+
+/// The end of a proof that a client drove: the new values are stored, or the old ones come back.
+class ProofTask final : public ParameterTask {
+ public:
+  /// @param proven the values that wait are stored
+  ProofTask(const Parts& parts, const Caller& waits, bool proven, double now)
+      : ParameterTask(parts, waits), proven_(proven), asked_at_(now) {}
+
+  TaskTurn turn(double now) override;
+
+ private:
+  TaskTurn store(double now);
+
+  bool proven_;
+  double asked_at_;  // s
+  bool begun_ = false;
+};
 
 }  // namespace odomcalib

@@ -8,7 +8,6 @@
 #include <set>
 
 #include "daemon/routines/manoeuvres.hpp"
-#include "daemon/routines/pattern.hpp"
 #include "daemon/routines/plans.hpp"
 #include "daemon/routines/runner.hpp"
 

@@ -1,4 +1,4 @@
-#include "daemon/service/loop_guard.hpp"
+#include "daemon/service/loop_watch.hpp"
 
 #include <gtest/gtest.h>
 

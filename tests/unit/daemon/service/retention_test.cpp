@@ -1,4 +1,4 @@
-#include "daemon/service/retention.hpp"
+#include "daemon/service/state_folder.hpp"
 
 #include <gtest/gtest.h>
 
