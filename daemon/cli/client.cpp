@@ -1,5 +1,4 @@
 #include "daemon/cli/client.hpp"
-#include "daemon/cli/settings.hpp"
 
 #include <poll.h>
 #include <sched.h>
@@ -14,6 +13,8 @@
 #include <cstring>
 #include <nlohmann/json.hpp>
 #include <utility>
+
+#include "daemon/cli/settings.hpp"
 
 namespace odomcalib::cli {
 namespace {
@@ -56,16 +57,25 @@ ordered_json renewal_of(const std::string& lease) {
 
 // Progress goes to the caller; a final reply is returned.
 std::optional<control::Reply> final_reply(const control::Reply& reply,
-                                          const std::function<void(const std::string&)>& progress) {
+                                          const std::function<void(const ordered_json&)>& progress) {
   if (!reply.continues) return reply;
   const auto body = ordered_json::parse(reply.parameters, nullptr, false);
-  if (body.is_object() && body.contains("progress")) progress(body["progress"].dump());
+  if (body.is_object() && body.contains("progress")) progress(body["progress"]);
   return std::nullopt;
 }
 
-Result<std::string> value_of(const control::Reply& reply) {
+Result<ordered_json> value_of(const control::Reply& reply) {
   if (!reply.error.empty()) return control::error_of(reply);
-  return reply.parameters;
+  return ordered_json::parse(reply.parameters, nullptr, false);
+}
+
+/// The next whole frame; nullopt: it has not come yet.
+Result<std::optional<control::Reply>> next_reply(control::FrameDecoder& decoder) {
+  const auto frame = decoder.next();
+  if (!frame) return std::optional<control::Reply>();
+  auto reply = control::decode_reply(*frame);
+  if (!reply) return reply.error();
+  return std::optional(std::move(reply).value());
 }
 
 }  // namespace
@@ -117,11 +127,7 @@ Result<void> Client::send(const std::string& method, ordered_json parameters, bo
 }
 
 Result<std::optional<control::Reply>> Client::receive(int timeout_ms) {
-  if (const auto frame = decoder_.next()) {
-    auto reply = control::decode_reply(*frame);
-    if (!reply) return reply.error();
-    return std::optional(std::move(reply).value());
-  }
+  if (auto waiting = next_reply(decoder_); !waiting || waiting.value()) return waiting;
   pollfd polled{fd_, POLLIN, 0};
   if (poll(&polled, 1, timeout_ms) <= 0) return std::optional<control::Reply>();
   std::array<char, 65536> buffer;
@@ -129,14 +135,10 @@ Result<std::optional<control::Reply>> Client::receive(int timeout_ms) {
   if (got == 0 || (got < 0 && errno != EINTR))
     return not_running("control socket", "the connection to odomcalibd was lost");
   if (got > 0) decoder_.feed({buffer.data(), static_cast<std::size_t>(got)});
-  const auto frame = decoder_.next();
-  if (!frame) return std::optional<control::Reply>();
-  auto reply = control::decode_reply(*frame);
-  if (!reply) return reply.error();
-  return std::optional(std::move(reply).value());
+  return next_reply(decoder_);
 }
 
-Result<std::string> Client::call(const std::string& method, ordered_json parameters, int timeout_ms) {
+Result<ordered_json> Client::call(const std::string& method, ordered_json parameters, int timeout_ms) {
   if (auto sent = send(method, std::move(parameters)); !sent) return sent.error();
   const auto until = RenewalClock::now() + std::chrono::milliseconds(timeout_ms);
   while (RenewalClock::now() < until) {
@@ -147,10 +149,17 @@ Result<std::string> Client::call(const std::string& method, ordered_json paramet
   return Error{ErrorCode::timeout, "odomcalibd does not answer", method, "see systemctl status odomcalib"};
 }
 
-Result<std::string> call_with_lease(const std::string& socket, const std::string& method,
-                                    ordered_json parameters,
-                                    const std::function<void(const std::string&)>& progress,
-                                    WhenInterrupted interrupted, Client* on) {
+Result<ordered_json> call_once(const std::string& socket, const std::string& method, ordered_json parameters,
+                               int timeout_ms) {
+  auto client = Client::connect(socket);
+  if (!client) return client.error();
+  return client.value().call(method, std::move(parameters), timeout_ms);
+}
+
+Result<ordered_json> call_with_lease(const std::string& socket, const std::string& method,
+                                     ordered_json parameters,
+                                     const std::function<void(const ordered_json&)>& progress,
+                                     WhenInterrupted interrupted, Client* on) {
   if (signalled != 0 && interrupted != WhenInterrupted::begin)
     return Error{ErrorCode::cancelled, "interrupted", method, "start again"};
   auto keeper = Client::connect(socket);
@@ -162,7 +171,7 @@ Result<std::string> call_with_lease(const std::string& socket, const std::string
   const Hurry until_it_ends;
   const auto given = keeper.value().call("Acquire");
   if (!given) return given.error();
-  const auto lease = ordered_json::parse(given.value(), nullptr, false).value("lease", std::string());
+  const auto lease = given.value().value("lease", std::string());
   parameters["lease"] = lease;
   if (auto sent = worker.send(method, std::move(parameters), true); !sent) return sent.error();
   auto next = RenewalClock::now();
@@ -179,6 +188,18 @@ Result<std::string> call_with_lease(const std::string& socket, const std::string
   }
   (void)keeper.value().call("Stop", ordered_json::object(), 500);
   return Error{ErrorCode::cancelled, "interrupted, the robot was stopped", method, "start again"};
+}
+
+Result<ordered_json> answer_with(ordered_json answer, const std::string& method, const std::string& member) {
+  if (answer.is_object() && (member.empty() || answer.contains(member))) return answer;
+  return Error{
+      ErrorCode::format, "the daemon's answer has no " + (member.empty() ? "members" : member), method,
+      "odomcalibd and odomcalibctl are of different versions: install both again, and restart odomcalibd"};
+}
+
+bool stands_in_the_way(const ordered_json& check) {
+  if (!check.is_object() || !check.contains("outcome")) return true;
+  return check["outcome"] != "ok" && check["outcome"] != "warn";
 }
 
 }  // namespace odomcalib::cli

@@ -28,16 +28,21 @@ class Client {
   /// The next reply, or nullopt when none came within the time. Errors: not_running (connection lost),
   /// format.
   Result<std::optional<control::Reply>> receive(int timeout_ms);
-  /// One call with one reply. @return parameters as JSON text; the daemon's error as ours
-  Result<std::string> call(const std::string& method,
-                           nlohmann::ordered_json parameters = nlohmann::ordered_json::object(),
-                           int timeout_ms = 5000);
+  /// One call with one reply. @return its parameters; the daemon's error as ours
+  Result<nlohmann::ordered_json> call(const std::string& method,
+                                      nlohmann::ordered_json parameters = nlohmann::ordered_json::object(),
+                                      int timeout_ms = 5000);
 
  private:
   explicit Client(int fd) : fd_(fd) {}
   int fd_;
   control::FrameDecoder decoder_;
 };
+
+/// One call on a connection of its own. Errors: those of Client.
+Result<nlohmann::ordered_json> call_once(const std::string& socket, const std::string& method,
+                                         nlohmann::ordered_json parameters = nlohmann::ordered_json::object(),
+                                         int timeout_ms = 5000);
 
 /// While one lives, Ctrl-C, Ctrl-Z, SIGTERM and SIGHUP ask for the end of the method that runs instead of
 /// ending the process, and a later method is not begun any more.
@@ -63,13 +68,20 @@ enum class WhenInterrupted {
 /// lets go of it on Ctrl-C, Ctrl-Z, SIGTERM and SIGHUP. A suspended or killed process renews nothing, and the
 /// robot stops.
 /// @param parameters JSON object without "lease"
-/// @param progress called with the JSON text of each progress object
+/// @param progress called with each progress object
 /// @param on outlives the call: for what the daemon ends with the connection that asked for it; null: a
 /// connection of the call's own
-Result<std::string> call_with_lease(const std::string& socket, const std::string& method,
-                                    nlohmann::ordered_json parameters,
-                                    const std::function<void(const std::string&)>& progress,
-                                    WhenInterrupted interrupted = WhenInterrupted::stop,
-                                    Client* on = nullptr);
+Result<nlohmann::ordered_json> call_with_lease(
+    const std::string& socket, const std::string& method, nlohmann::ordered_json parameters,
+    const std::function<void(const nlohmann::ordered_json&)>& progress,
+    WhenInterrupted interrupted = WhenInterrupted::stop, Client* on = nullptr);
+
+/// All of an answer. Error format: it is no object, or lacks the member.
+/// @param member empty: none is asked for
+Result<nlohmann::ordered_json> answer_with(nlohmann::ordered_json answer, const std::string& method,
+                                           const std::string& member);
+
+/// Whether a row of the checks stands in the way. An outcome that is not known here does.
+bool stands_in_the_way(const nlohmann::ordered_json& check);
 
 }  // namespace odomcalib::cli

@@ -3,13 +3,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <filesystem>
 #include <set>
 #include <utility>
 
 #include "daemon/cli/settings.hpp"
+#include "proto/number_from.hpp"
 
 namespace odomcalib::cli {
 namespace {
@@ -134,10 +134,7 @@ std::optional<Error> not_comparable(const std::vector<ComparedRobot>& robots) {
 
 std::optional<double> leading_number(const std::string& text, std::string_view unit) {
   if (!text.ends_with(unit)) return std::nullopt;
-  double value = 0.0;
-  const char* end = text.data() + text.size() - unit.size();
-  const auto read = std::from_chars(text.data(), end, value);
-  return read.ec == std::errc{} && read.ptr == end ? std::optional(value) : std::nullopt;
+  return number_from<double>(std::string_view(text).substr(0, text.size() - unit.size()));
 }
 
 }  // namespace

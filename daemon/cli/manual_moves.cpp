@@ -78,13 +78,19 @@ double chosen(const std::vector<double>& measured, std::size_t k) {
   return measured.size() == 1 ? measured[0] : measured[k];
 }
 
-Quantity diameter(const Repeated& radius) {
-  return {2.0 * radius.mean, radius.std < 0.0 ? -1.0 : 2.0 * radius.std, "m"};
+/// @param std below 0: it is not known
+void propose_length(Proposal& proposal, BaseQuantity length, double value, double std) {
+  const double in_force = nominal_value(proposal.robot, length).value_or(0.0);
+  proposal.entry.parameters.push_back({name_of(length), {value, std < 0.0 ? -1.0 : std, "m", in_force}});
+}
+
+void propose_diameter(Proposal& proposal, BaseQuantity wheel, const Repeated& radius) {
+  propose_length(proposal, wheel, 2.0 * radius.mean, 2.0 * radius.std);
 }
 
 void add_error(Proposal& proposal, const char* name, const Repeated& factor) {
-  proposal.errors.push_back({name, {factor.mean, factor.std, ""}});
-  proposal.spreads.push_back(factor.spread);
+  const double spread = factor.std >= 0.0 ? factor.spread : -1.0;
+  proposal.entry.errors.push_back({name, {factor.mean, factor.std, spread}});
 }
 
 calib::classical::ReferenceError error_of(bool by_tape) {
@@ -100,17 +106,18 @@ bool is_settled(const Repeated& factor) {
 
 Proposal begun(const char* method, bool by_tape, const DrivenMoves& driven) {
   Proposal proposal;
-  proposal.method = method;
-  proposal.measured_by = by_tape ? "tape" : "lidar";
+  proposal.entry.method = method;
+  proposal.entry.measured_by = by_tape ? "tape" : "lidar";
   proposal.robot = robot_of(driven.robot);
   return proposal;
 }
 
 void remark_few(Proposal& proposal) {
-  if (proposal.used < settings::kFewRepetitions)
-    proposal.remarks.push_back(fmt::format("{} {}: the deviation {}; --repeat 3 makes it known",
-                                           proposal.used, proposal.used == 1 ? "repetition" : "repetitions",
-                                           proposal.used == 1 ? "is not known" : "is hardly known"));
+  if (proposal.entry.used < settings::kFewRepetitions)
+    proposal.entry.remarks.push_back(
+        fmt::format("{} {}: the deviation {}; --repeat 3 makes it known", proposal.entry.used,
+                    proposal.entry.used == 1 ? "repetition" : "repetitions",
+                    proposal.entry.used == 1 ? "is not known" : "is hardly known"));
 }
 
 Result<std::vector<StraightMove>> straights_by_tape(const DrivenMoves& driven,
@@ -153,17 +160,6 @@ std::optional<SquareRun> run_of(const DrivenMoves& driven, std::size_t round) {
 
 std::string percent(double factor) { return fmt::format("{:+.3f} %", 100.0 * (factor - 1.0)); }
 
-double in_force(const RobotDescription& robot, const std::string& name) {
-  const auto length = base_quantity_from(name);
-  return length ? nominal_value(robot, *length).value_or(0.0) : 0.0;
-}
-
-std::string assignments(const Proposal& proposal) {
-  std::string text;
-  for (const auto& [name, q] : proposal.parameters) text += fmt::format(" {}={:.7f}", name, q.value);
-  return text;
-}
-
 }  // namespace
 
 Result<void> DrivenMoves::add(const ordered_json& result) {
@@ -199,15 +195,15 @@ Result<Proposal> straight_proposal(const DrivenMoves& driven, const std::vector<
       calib::classical::propose_radii(moves.value(), base_of(proposal.robot), error_of(by_tape));
   if (!radii) return radii.error();
   const auto& found = radii.value();
-  proposal.parameters = {{name_of(BaseQuantity::left_wheel_diameter), diameter(found.left)},
-                         {name_of(BaseQuantity::right_wheel_diameter), diameter(found.right)}};
+  propose_diameter(proposal, BaseQuantity::left_wheel_diameter, found.left);
+  propose_diameter(proposal, BaseQuantity::right_wheel_diameter, found.right);
   add_error(proposal, "E_s", found.scale);
   if (found.diameters) add_error(proposal, "E_d", *found.diameters);
-  proposal.used = moves.value().size();
-  if (!by_tape) proposal.left_out = driven.moves.size() - proposal.used;
-  proposal.settled = is_settled(found.scale);
+  proposal.entry.used = moves.value().size();
+  if (!by_tape) proposal.entry.left_out = driven.moves.size() - proposal.entry.used;
+  proposal.entry.settled = is_settled(found.scale);
   if (by_tape)
-    proposal.remarks.emplace_back(
+    proposal.entry.remarks.emplace_back(
         "a tape shows no heading: both wheels got one factor, unequal wheels stay hidden");
   remark_few(proposal);
   return proposal;
@@ -232,12 +228,12 @@ Result<Proposal> spin_proposal(const DrivenMoves& driven, const std::vector<doub
   const auto track = calib::classical::propose_track_width(turns, base_of(proposal.robot), error_of(by_tape));
   if (!track) return track.error();
   const Repeated& width = track.value().track_width;
-  proposal.parameters = {{name_of(BaseQuantity::track_width), {width.mean, width.std, "m"}}};
+  propose_length(proposal, BaseQuantity::track_width, width.mean, width.std);
   add_error(proposal, "E_b", track.value().track);
-  proposal.used = turns.size();
-  proposal.left_out = driven.moves.size() - turns.size();
-  proposal.settled = is_settled(track.value().track);
-  proposal.remarks.push_back(
+  proposal.entry.used = turns.size();
+  proposal.entry.left_out = driven.moves.size() - turns.size();
+  proposal.entry.settled = is_settled(track.value().track);
+  proposal.entry.remarks.push_back(
       fmt::format("the diameters in force are taken as right to {:.2f} %, as straight leaves them",
                   100.0 * calib::classical::settings::kDiametersOfStraight));
   remark_few(proposal);
@@ -271,67 +267,48 @@ Result<Proposal> square_proposal(const DrivenMoves& driven, double side) {
   const auto lengths = calib::classical::with_errors(base, {1.0, found.diameters.mean, found.track.mean});
   // With the mean fixed, each wheel moves by half of what their ratio moves; the mean is as good as the
   // straight line that gave it.
-  const auto diameter_of = [&](double radius) {
+  const auto add = [&](BaseQuantity wheel, double radius) {
     const double std =
         std::hypot(found.diameters.std, 2.0 * calib::classical::settings::kDiametersOfStraight) * radius;
-    return Quantity{2.0 * radius, found.diameters.std < 0.0 ? -1.0 : std, "m"};
+    propose_length(proposal, wheel, 2.0 * radius, found.diameters.std < 0.0 ? -1.0 : std);
   };
-  const double track_std = found.track.std < 0.0 ? -1.0 : found.track.std * base.track_width;
-  proposal.parameters = {{name_of(BaseQuantity::left_wheel_diameter), diameter_of(lengths.left_radius)},
-                         {name_of(BaseQuantity::right_wheel_diameter), diameter_of(lengths.right_radius)},
-                         {name_of(BaseQuantity::track_width), {lengths.track_width, track_std, "m"}}};
+  add(BaseQuantity::left_wheel_diameter, lengths.left_radius);
+  add(BaseQuantity::right_wheel_diameter, lengths.right_radius);
+  propose_length(proposal, BaseQuantity::track_width, lengths.track_width,
+                 found.track.std * base.track_width);
   add_error(proposal, "E_d", found.diameters);
   add_error(proposal, "E_b", found.track);
-  proposal.used = pairs.size();
-  proposal.left_out = count - pairs.size();
-  proposal.settled = is_settled(found.diameters) && is_settled(found.track);
-  proposal.remarks.push_back(fmt::format("by the first-order formulae: E_d {:.5f}, E_b {:.5f}",
-                                         found.formula.diameters, found.formula.track));
-  proposal.remarks.push_back(fmt::format(
+  proposal.entry.used = pairs.size();
+  proposal.entry.left_out = count - pairs.size();
+  proposal.entry.settled = is_settled(found.diameters) && is_settled(found.track);
+  proposal.entry.remarks.push_back(fmt::format("by the first-order formulae: E_d {:.5f}, E_b {:.5f}",
+                                               found.formula.diameters, found.formula.track));
+  proposal.entry.remarks.push_back(fmt::format(
       "mean end of a square: {:.1f} mm from where odometry says, {:.1f} mm with the lengths proposed",
       1e3 * found.farthest_before, 1e3 * found.farthest_after));
-  proposal.remarks.emplace_back(
+  proposal.entry.remarks.emplace_back(
       "a closed figure does not show the common scale of the wheels: straight does");
   remark_few(proposal);
   return proposal;
 }
 
-ProposalEntry entry_of(const Proposal& proposal) {
-  ProposalEntry entry;
-  entry.method = proposal.method;
-  entry.measured_by = proposal.measured_by;
-  entry.used = proposal.used;
-  entry.left_out = proposal.left_out;
-  entry.settled = proposal.settled;
-  for (const auto& [name, q] : proposal.parameters)
-    entry.parameters.emplace_back(name,
-                                  ProposedValue{q.value, q.std, q.unit, in_force(proposal.robot, name)});
-  for (std::size_t k = 0; k < proposal.errors.size(); ++k) {
-    const auto& [name, q] = proposal.errors[k];
-    const double spread = q.std >= 0.0 ? proposal.spreads[k] : -1.0;
-    entry.errors.emplace_back(name, MoveError{q.value, q.std, spread});
-  }
-  entry.remarks = proposal.remarks;
-  return entry;
+std::string next_command(const ProposalEntry& proposal) {
+  std::string command = "odomcalibctl params set";
+  for (const auto& [name, q] : proposal.parameters) command += fmt::format(" {}={:.7f}", name, q.value);
+  return command;
 }
 
-std::string next_command(const Proposal& proposal) {
-  return "odomcalibctl params set" + assignments(proposal);
-}
-
-std::vector<std::string> to_lines(const Proposal& proposal) {
+std::vector<std::string> to_lines(const ProposalEntry& proposal) {
   std::vector<std::string> lines;
   for (const auto& [name, q] : proposal.parameters) {
-    const double before = in_force(proposal.robot, name);
-    std::string line = fmt::format("{}: {:.3f} -> {:.3f}", readable(name), 1e3 * before, 1e3 * q.value);
+    std::string line = fmt::format("{}: {:.3f} -> {:.3f}", readable(name), 1e3 * q.in_force, 1e3 * q.value);
     if (q.std >= 0.0) line += fmt::format(" +- {:.3f}", 2e3 * q.std);
-    lines.push_back(line + fmt::format(" mm ({})", percent(q.value / before)));
+    lines.push_back(line + fmt::format(" mm ({})", percent(q.value / q.in_force)));
   }
-  for (std::size_t k = 0; k < proposal.errors.size(); ++k) {
-    const auto& [name, q] = proposal.errors[k];
+  for (const auto& [name, q] : proposal.errors) {
     std::string line = fmt::format("{} {:.5f}", name, q.value);
     if (q.std >= 0.0)
-      line += fmt::format(" +- {:.5f}, spread of one repetition {:.5f}", 2.0 * q.std, proposal.spreads[k]);
+      line += fmt::format(" +- {:.5f}, spread of one repetition {:.5f}", 2.0 * q.std, q.spread);
     lines.push_back(line);
   }
   lines.push_back(fmt::format(
@@ -344,19 +321,21 @@ std::vector<std::string> to_lines(const Proposal& proposal) {
 
 Calibration calibration_of(const Proposal& proposal, const DrivenMoves& driven) {
   Calibration calibration;
+  const ProposalEntry& entry = proposal.entry;
   calibration.robot = proposal.robot;
-  calibration.parameters = proposal.parameters;
+  for (const auto& [name, q] : entry.parameters)
+    calibration.parameters.emplace_back(name, Quantity{q.value, q.std, q.unit});
   calibration.verdict = Verdict::accepted_with_warnings;
   calibration.reasons = {
-      fmt::format("lengths of {} alone, by {}: {} repetitions, no other error was looked for",
-                  proposal.method, proposal.measured_by, proposal.used)};
-  calibration.reasons.insert(calibration.reasons.end(), proposal.remarks.begin(), proposal.remarks.end());
+      fmt::format("lengths of {} alone, by {}: {} repetitions, no other error was looked for", entry.method,
+                  entry.measured_by, entry.used)};
+  calibration.reasons.insert(calibration.reasons.end(), entry.remarks.begin(), entry.remarks.end());
   for (const std::string& recording : driven.recordings) {
     DataUse use;
     use.name = recording.substr(recording.find_last_of('/') + 1);
     calibration.data.push_back(use);
   }
-  calibration.proposal = entry_of(proposal);
+  calibration.proposal = entry;
   return calibration;
 }
 

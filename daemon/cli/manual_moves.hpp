@@ -22,15 +22,8 @@ struct DrivenMoves {
 };
 
 struct Proposal {
-  std::string method;                  ///< straight, spin or square
-  std::string measured_by;             ///< lidar or tape
-  QuantityList parameters;             ///< corrected lengths that this motion shows
-  QuantityList errors;                 ///< E_s, E_d, E_b as far as it shows them
-  std::vector<double> spreads;         ///< standard deviations of one repetition, one for each of `errors`
-  std::size_t used = 0, left_out = 0;  ///< moves or squares; those that the lidar did not see are left out
-  bool settled = false;                ///< more repetitions would not make it better
-  RobotDescription robot;              ///< values in force during the motion
-  std::vector<std::string> remarks;
+  ProposalEntry entry;     ///< as the calibration file has it
+  RobotDescription robot;  ///< values in force during the motion
 };
 
 /// @param measured m, of the moves that go the way of the first one: one value for each, or one for all;
@@ -44,11 +37,9 @@ double side_of(const DrivenMoves& driven);
 /// @param side m. Error usage: no squares were driven.
 Result<Proposal> square_proposal(const DrivenMoves& driven, double side);
 
-/// As the calibration file has it.
-ProposalEntry entry_of(const Proposal& proposal);
-std::vector<std::string> to_lines(const Proposal& proposal);
+std::vector<std::string> to_lines(const ProposalEntry& proposal);
 /// Command that puts the proposal into force.
-std::string next_command(const Proposal& proposal);
+std::string next_command(const ProposalEntry& proposal);
 /// A calibration of these lengths alone, for `apply`.
 Calibration calibration_of(const Proposal& proposal, const DrivenMoves& driven);
 

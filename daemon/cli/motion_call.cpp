@@ -10,9 +10,9 @@
 #include <iostream>
 #include <utility>
 
+#include "daemon/cli/answer_documents.hpp"
 #include "daemon/cli/client.hpp"
 #include "daemon/cli/output.hpp"
-#include "daemon/cli/plan_document.hpp"
 #include "proto/angles.hpp"
 
 namespace odomcalib::cli {
@@ -90,13 +90,10 @@ std::string write_question(const ordered_json& plan) {
 
 // Prospect of the motion, or of the write-back, from the daemon that would do it.
 Result<Prospect> prospect_of(const Session& session, const std::string& method, ordered_json parameters) {
-  auto client = Client::connect(session.socket);
-  if (!client) return client.error();
   parameters["dry_run"] = true;
-  const auto answer = client.value().call(method, std::move(parameters));
+  const auto answer = call_once(session.socket, method, std::move(parameters));
   if (!answer) return answer.error();
-  const auto plan =
-      ordered_json::parse(answer.value(), nullptr, false).value("result", ordered_json::object());
+  const auto plan = answer.value().value("result", ordered_json::object());
   if (!moves(method)) return Prospect{"", write_question(plan), false};
   return Prospect{to_text(describe_plan(plan), true, text_columns()), unseen_question(plan),
                   plan.value("first_motion", false)};
@@ -119,15 +116,14 @@ Result<ordered_json> run_method(const Session& session, const Consent& given, co
   if (applies && !given.dry_run)
     parameters["of_this_robot"] = true;  // whoever consented was told of which it is
   ProgressLine line;
-  const auto progress = [&line](const std::string& text) {
-    const auto body = ordered_json::parse(text, nullptr, false);
+  const auto progress = [&line](const ordered_json& body) {
     line.show(fmt::format("{} {:3.0f} %   Ctrl-C stops the robot", body.value("phase", ""),
                           100.0 * body.value("fraction", 0.0)));
   };
   const auto answer =
       call_with_lease(session.socket, method, std::move(parameters), progress, given.interrupted, given.on);
   if (!answer) return answer.error();
-  return ordered_json::parse(answer.value(), nullptr, false).value("result", ordered_json::object());
+  return answer.value().value("result", ordered_json::object());
 }
 
 void add_consent(CLI::App& verb, Consent& consent) {

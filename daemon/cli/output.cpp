@@ -6,7 +6,6 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cstdio>
 #include <cstdlib>
 #include <iostream>
@@ -16,6 +15,7 @@
 
 #include "daemon/cli/exit_codes.hpp"
 #include "daemon/cli/settings.hpp"
+#include "proto/number_from.hpp"
 
 namespace odomcalib::cli {
 namespace {
@@ -29,10 +29,7 @@ std::size_t terminal_columns(int terminal) {
 /// 0: there is none.
 std::size_t wanted_columns() {
   const char* told = std::getenv("COLUMNS");  // NOLINT(concurrency-mt-unsafe): nobody sets it here
-  const std::string_view text = told == nullptr ? "" : told;
-  std::size_t columns = 0;
-  const auto parsed = std::from_chars(text.data(), text.data() + text.size(), columns);
-  return parsed.ec == std::errc{} && parsed.ptr == text.data() + text.size() ? columns : 0;
+  return number_from<std::size_t>(told == nullptr ? "" : told).value_or(0);
 }
 
 double seconds(std::chrono::steady_clock::duration time) {

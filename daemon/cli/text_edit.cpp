@@ -1,11 +1,16 @@
 #include "daemon/cli/text_edit.hpp"
 
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
+#include <filesystem>
+#include <iostream>
 #include <system_error>
+
+#include "proto/file_bytes.hpp"
+#include "proto/number_from.hpp"
 
 namespace odomcalib::cli {
 namespace {
@@ -43,6 +48,16 @@ std::string range(std::size_t from, std::size_t count) {
   return count == 1 ? fmt::format("{}", line) : fmt::format("{},{}", line, count);
 }
 
+namespace fs = std::filesystem;
+
+Result<void> replace_keeping_mode(const fs::path& path, const std::string& bytes, fs::perms mode) {
+  if (auto written = replace_file(path, bytes); !written) return written;
+  std::error_code error;
+  fs::permissions(path, mode, error);
+  if (!error) return {};
+  return Error{ErrorCode::io, "cannot set the mode: " + error.message(), path.string(), "set it by hand"};
+}
+
 }  // namespace
 
 std::string edited(std::string_view text, std::vector<TextEdit> edits) {
@@ -77,11 +92,8 @@ std::string diff_of(const std::string& name, std::string_view before_text, std::
 
 std::optional<double> number_in(std::string_view text) {
   if (text.starts_with('+')) text.remove_prefix(1);
-  double number = 0.0;
-  const auto read = std::from_chars(text.data(), text.data() + text.size(), number);
-  if (read.ec != std::errc() || read.ptr != text.data() + text.size() || !std::isfinite(number))
-    return std::nullopt;
-  return number;
+  const auto number = number_from<double>(text);
+  return number && std::isfinite(*number) ? number : std::nullopt;
 }
 
 std::string real_text(double number) {
@@ -92,6 +104,35 @@ std::string real_text(double number) {
 std::size_t line_of(std::string_view text, std::size_t at) {
   const auto before = text.substr(0, at);
   return 1 + static_cast<std::size_t>(std::count(before.begin(), before.end(), '\n'));
+}
+
+std::string kept_name(const std::string& path) { return behind_links(path).string() + "~"; }
+
+Result<void> ask_to_change(const std::string& path, bool yes) {
+  if (yes) return {};
+  if (isatty(STDIN_FILENO) != 1)
+    return Error{ErrorCode::usage, "changing a file needs consent", path, "add --yes; nothing was written"};
+  std::cerr << "Change " << path << " so? The old file is kept as " << kept_name(path)
+            << ". Type yes to go on: " << std::flush;
+  std::string answer;
+  std::getline(std::cin, answer);
+  if (answer == "yes") return {};
+  return Error{ErrorCode::cancelled, "no consent", path, "nothing was written"};
+}
+
+Result<void> change_own_file(const std::string& path, const std::string& text,
+                             const std::vector<TextEdit>& edits) {
+  const auto now = read_file_bytes(path);
+  if (!now) return now.error();
+  if (now.value() != text)
+    return Error{ErrorCode::busy, "was changed by somebody else meanwhile", path,
+                 "try again; nothing was written"};
+  std::error_code error;
+  const auto status = fs::status(path, error);
+  if (error || !fs::is_regular_file(status))
+    return Error{ErrorCode::io, "is no regular file", path, "name a file; nothing was written"};
+  if (auto kept = replace_keeping_mode(kept_name(path), text, status.permissions()); !kept) return kept;
+  return replace_keeping_mode(behind_links(path), edited(text, edits), status.permissions());
 }
 
 }  // namespace odomcalib::cli

@@ -1,12 +1,10 @@
 // Calibrations of one robot against each other, or the newest of each robot of a fleet.
 #include <CLI/CLI.hpp>
-#include <memory>
 #include <nlohmann/json.hpp>
 
 #include "daemon/cli/comparison_document.hpp"
 #include "daemon/cli/exit_codes.hpp"
-#include "daemon/cli/outputs.hpp"
-#include "daemon/cli/verbs.hpp"
+#include "daemon/cli/options.hpp"
 #include "proto/file_bytes.hpp"
 
 namespace odomcalib::cli {
@@ -69,9 +67,9 @@ int compare_files(const CompareArguments& arguments, const Session& session) {
 }  // namespace
 
 void add_compare(CLI::App& app, Session& session) {
-  auto* verb =
-      app.add_subcommand("compare", "What changed between calibrations of one robot; a fleet as a table");
-  auto options = std::make_shared<CompareArguments>();
+  const auto [verb, options] =
+      add_verb(app, session, "compare", "What changed between calibrations of one robot; a fleet as a table",
+               compare_files);
   verb->add_option("CALIBRATION", options->files, "files that solve wrote, of different drives")->required();
   verb->add_option("--by", options->by, "robot: a line a robot, the most urgent first")
       ->check(CLI::IsMember({"robot"}));
@@ -80,9 +78,6 @@ void add_compare(CLI::App& app, Session& session) {
                    "when the error of a metre passes this, as the trend goes on: 5mm/m or 0.5%");
   verb->add_option("--csv", options->csv, "CSV to write: each value, and its change since the one before");
   verb->add_option("--html", options->html, "page to write, with a picture of each parameter");
-  verb->callback([&session, options] {
-    session.run = [&session, options] { return compare_files(*options, session); };
-  });
 }
 
 }  // namespace odomcalib::cli

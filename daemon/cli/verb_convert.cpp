@@ -2,14 +2,12 @@
 
 #include <CLI/CLI.hpp>
 #include <iostream>
-#include <memory>
 #include <nlohmann/json.hpp>
 
 #include "daemon/cli/exit_codes.hpp"
 #include "daemon/cli/left_out_lines.hpp"
-#include "daemon/cli/outputs.hpp"
+#include "daemon/cli/options.hpp"
 #include "daemon/cli/recordings.hpp"
-#include "daemon/cli/verbs.hpp"
 #include "proto/calibration/discarded_json.hpp"
 #include "proto/file_bytes.hpp"
 #include "proto/recording/left_out.hpp"
@@ -73,14 +71,11 @@ int convert_recording(const ConvertOptions& options, const Session& session) {
 }  // namespace
 
 void add_convert(CLI::App& app, Session& session) {
-  auto* verb = app.add_subcommand("convert", "Write any recording as JSON Lines");
-  auto options = std::make_shared<ConvertOptions>();
+  const auto [verb, options] =
+      add_verb(app, session, "convert", "Write any recording as JSON Lines", convert_recording);
   verb->add_option("RECORDING", options->recording, "in any form that solve reads")->required();
   verb->add_option("--out", options->out, "file to write: .jsonl, or .jsonl.gz to pack it")->required();
   add_reading_options(*verb, options->reading);
-  verb->callback([&session, options] {
-    session.run = [&session, options] { return convert_recording(*options, session); };
-  });
 }
 
 }  // namespace odomcalib::cli

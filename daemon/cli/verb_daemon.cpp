@@ -9,12 +9,11 @@
 #include <utility>
 #include <vector>
 
-#include "daemon/cli/answers.hpp"
+#include "daemon/cli/answer_documents.hpp"
 #include "daemon/cli/client.hpp"
 #include "daemon/cli/document.hpp"
 #include "daemon/cli/exit_codes.hpp"
 #include "daemon/cli/parameter_tables.hpp"
-#include "daemon/cli/status_document.hpp"
 #include "daemon/cli/verbs.hpp"
 #include "daemon/cli/write_backs.hpp"
 
@@ -49,11 +48,9 @@ int status_of(const ordered_json& body, const Question& question) {
 }
 
 int ask(const Session& session, const Question& question) {
-  auto client = Client::connect(session.socket);
-  if (!client) return report_error(client.error(), session.json);
-  const auto answer = client.value().call(question.method);
+  auto answer = call_once(session.socket, question.method);
   if (!answer) return report_error(answer.error(), session.json);
-  auto known = answer_with(answer.value(), question.method, question.needed());
+  auto known = answer_with(std::move(answer).value(), question.method, question.needed());
   if (!known) return report_error(known.error(), session.json);
   ordered_json body = std::move(known).value();
   if (question.document == "history") name_users(body["entries"]);

@@ -1,11 +1,10 @@
 #include <CLI/CLI.hpp>
 #include <filesystem>
 #include <iostream>
-#include <memory>
 #include <system_error>
 
 #include "daemon/cli/exit_codes.hpp"
-#include "daemon/cli/verbs.hpp"
+#include "daemon/cli/options.hpp"
 #include "drivers/decode/decode.hpp"
 #include "odomcalib_paths.hpp"
 #include "proto/file_bytes.hpp"
@@ -44,8 +43,8 @@ int decode_file(const DecodeOptions& options, const Session& session) {
 }  // namespace
 
 void add_decode(CLI::App& app, Session& session) {
-  auto* verb = app.add_subcommand("decode", "Bytes of a device, or a candump log, as JSON Lines");
-  auto options = std::make_shared<DecodeOptions>();
+  const auto [verb, options] =
+      add_verb(app, session, "decode", "Bytes of a device, or a candump log, as JSON Lines", decode_file);
   verb->add_option("DRIVER", options->driver,
                    "a lidar type (ld06, rplidar, ydlidar:x4, hokuyo, sick, xv11, ...), "
                    "or a controller: PROTOCOL:PROFILE (canopen:zlac8015d, agilex, vesc, ...)")
@@ -53,8 +52,6 @@ void add_decode(CLI::App& app, Session& session) {
   verb->add_option("FILE", options->file, "bytes as the device sent them, or what candump -L wrote")
       ->required();
   verb->add_option("--profiles", options->profiles, "folder of the profiles")->capture_default_str();
-  verb->callback(
-      [&session, options] { session.run = [&session, options] { return decode_file(*options, session); }; });
 }
 
 }  // namespace odomcalib::cli

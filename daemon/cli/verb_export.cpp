@@ -1,17 +1,15 @@
 // A calibration for other programs: tables as CSV, parameters as their configuration files want them.
 #include <CLI/CLI.hpp>
 #include <iostream>
-#include <memory>
 #include <nlohmann/json.hpp>
 
 #include "daemon/cli/exit_codes.hpp"
 #include "daemon/cli/export_configurations.hpp"
 #include "daemon/cli/export_formats.hpp"
-#include "daemon/cli/outputs.hpp"
-#include "daemon/cli/own_file.hpp"
+#include "daemon/cli/options.hpp"
 #include "daemon/cli/settings.hpp"
+#include "daemon/cli/text_edit.hpp"
 #include "daemon/cli/usable_calibration.hpp"
-#include "daemon/cli/verbs.hpp"
 #include "proto/file_bytes.hpp"
 
 namespace odomcalib::cli {
@@ -109,8 +107,9 @@ int export_calibration(const ExportOptions& options, const Session& session) {
 }  // namespace
 
 void add_export(CLI::App& app, Session& session) {
-  auto* verb = app.add_subcommand("export", "A calibration file for other programs: CSV, TOML, ros2_control");
-  auto options = std::make_shared<ExportOptions>();
+  const auto [verb, options] =
+      add_verb(app, session, "export", "A calibration file for other programs: CSV, TOML, ros2_control",
+               export_calibration);
   verb->add_option("CALIBRATION", options->calibration, "file that solve or calibrate wrote")->required();
   verb->add_option(
           "--what", options->what,
@@ -130,9 +129,6 @@ void add_export(CLI::App& app, Session& session) {
   verb->add_option("--link", options->link,
                    "of the lidar in that URDF; default: the one with laser, lidar or scan in its name");
   verb->add_flag("--yes", options->yes, "change it without a question");
-  verb->callback([&session, options] {
-    session.run = [&session, options] { return export_calibration(*options, session); };
-  });
 }
 
 }  // namespace odomcalib::cli

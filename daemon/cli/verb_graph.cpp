@@ -4,16 +4,13 @@
 #include <CLI/CLI.hpp>
 #include <iostream>
 #include <map>
-#include <memory>
 #include <nlohmann/json.hpp>
 
 #include "daemon/cli/exit_codes.hpp"
 #include "daemon/cli/graph_picture.hpp"
 #include "daemon/cli/graph_run.hpp"
-#include "daemon/cli/numbers.hpp"
-#include "daemon/cli/outputs.hpp"
+#include "daemon/cli/options.hpp"
 #include "daemon/cli/recordings.hpp"
-#include "daemon/cli/verbs.hpp"
 #include "proto/file_bytes.hpp"
 
 namespace odomcalib::cli {
@@ -130,8 +127,8 @@ void add_choice(CLI::App& verb, const std::string& option, Choice& chosen,
 }
 
 void add_optimize(CLI::App& parent, Session& session) {
-  auto* verb = parent.add_subcommand("optimize", "Move the vertices to where they agree best with the edges");
-  auto options = std::make_shared<OptimizeOptions>();
+  const auto [verb, options] = add_verb(
+      parent, session, "optimize", "Move the vertices to where they agree best with the edges", optimize);
   verb->add_option("GRAPH", options->files, "g2o or TORO text; several files are read as one")->required();
   add_unpack_limit(*verb, options->unpack_limit);
   verb->add_option("--out", options->out, "g2o file to write");
@@ -141,23 +138,18 @@ void add_optimize(CLI::App& parent, Session& session) {
   verb->add_option("--iterations", options->solver.max_iterations, "at most so many from one first guess")
       ->check(CLI::Range(1, 100000))
       ->capture_default_str();
-  verb->callback(
-      [&session, options] { session.run = [&session, options] { return optimize(*options, session); }; });
 }
 
 void add_info(CLI::App& parent, Session& session) {
-  auto* verb = parent.add_subcommand("info", "What a pose graph holds, and how well it fits its edges");
-  auto options = std::make_shared<OptimizeOptions>();
+  const auto [verb, options] = add_verb(
+      parent, session, "info", "What a pose graph holds, and how well it fits its edges", describe_graph);
   verb->add_option("GRAPH", options->files, "g2o or TORO text; several files are read as one")->required();
   add_unpack_limit(*verb, options->unpack_limit);
-  verb->callback([&session, options] {
-    session.run = [&session, options] { return describe_graph(*options, session); };
-  });
 }
 
 void add_build(CLI::App& parent, Session& session) {
-  auto* verb = parent.add_subcommand("build", "Make a graph and a map of the scans and ticks of a recording");
-  auto options = std::make_shared<BuildOptions>();
+  const auto [verb, options] = add_verb(
+      parent, session, "build", "Make a graph and a map of the scans and ticks of a recording", build);
   verb->add_option("RECORDING", options->recording, "in any form that solve reads")->required();
   verb->add_option("--out", options->out, "g2o file to write: poses of the lidar at keyframes");
   verb->add_option("--svg", options->picture, "picture to write: map, trajectory before and after, loops");
@@ -168,8 +160,6 @@ void add_build(CLI::App& parent, Session& session) {
   verb->add_option("--rotation", options->graph.spacing.rotation, "rad turned from keyframe to keyframe")
       ->check(finite(0.01, 6.0))
       ->capture_default_str();
-  verb->callback(
-      [&session, options] { session.run = [&session, options] { return build(*options, session); }; });
 }
 
 }  // namespace

@@ -1,12 +1,11 @@
 // Content of a recording and what solve would take of it, before anything is measured.
 #include <CLI/CLI.hpp>
-#include <memory>
 #include <nlohmann/json.hpp>
 
 #include "daemon/cli/exit_codes.hpp"
 #include "daemon/cli/inspection.hpp"
+#include "daemon/cli/options.hpp"
 #include "daemon/cli/recordings.hpp"
-#include "daemon/cli/verbs.hpp"
 
 namespace odomcalib::cli {
 namespace {
@@ -32,13 +31,10 @@ int inspect_recording(const InspectOptions& options, const Session& session) {
 }  // namespace
 
 void add_inspect(CLI::App& app, Session& session) {
-  auto* verb = app.add_subcommand("inspect", "What a recording holds, and what solve would take of it");
-  auto options = std::make_shared<InspectOptions>();
+  const auto [verb, options] = add_verb(
+      app, session, "inspect", "What a recording holds, and what solve would take of it", inspect_recording);
   verb->add_option("RECORDING", options->recording, "in any form that solve reads")->required();
   add_reading_options(*verb, options->reading);
-  verb->callback([&session, options] {
-    session.run = [&session, options] { return inspect_recording(*options, session); };
-  });
 }
 
 }  // namespace odomcalib::cli

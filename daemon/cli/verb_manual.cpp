@@ -3,23 +3,22 @@
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
-#include <charconv>
 #include <cmath>
 #include <functional>
 #include <iostream>
 #include <memory>
 
+#include "daemon/cli/answer_documents.hpp"
 #include "daemon/cli/client.hpp"
 #include "daemon/cli/exit_codes.hpp"
 #include "daemon/cli/manual_moves.hpp"
 #include "daemon/cli/motion_call.hpp"
-#include "daemon/cli/numbers.hpp"
-#include "daemon/cli/outputs.hpp"
-#include "daemon/cli/plan_document.hpp"
+#include "daemon/cli/options.hpp"
 #include "daemon/cli/verbs.hpp"
 #include "daemon/routines/settings.hpp"
 #include "proto/angles.hpp"
 #include "proto/file_bytes.hpp"
+#include "proto/number_from.hpp"
 
 namespace odomcalib::cli {
 namespace {
@@ -50,13 +49,11 @@ bool asks(const ManualOptions& options) {
 
 /// @param unit of what is typed, in SI
 Result<double> number_of(const std::string& text, double unit) {
-  double value = 0.0;
-  const auto parsed = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (parsed.ec != std::errc{} || parsed.ptr != text.data() + text.size() || !std::isfinite(value) ||
-      !(value > 0.0))
+  const auto value = number_from<double>(text);
+  if (!value || !std::isfinite(*value) || !(*value > 0.0))
     return Error{ErrorCode::usage, "\"" + text + "\" is no number above 0", "what was measured",
                  "for example 1.0132"};
-  return value * unit;
+  return *value * unit;
 }
 
 Result<std::vector<double>> measured_values(const ManualOptions& options, double unit) {
@@ -121,7 +118,8 @@ Result<ordered_json> move(const Session& session, ManualOptions& options, const 
 Result<Outcome> drive(const Session& session, ManualOptions options, const std::vector<Motion>& motions,
                       double unit, std::vector<double> measured, const Propose& propose) {
   Outcome outcome;
-  for (int round = 0; round < options.repeat && !(outcome.proposal && outcome.proposal->settled); ++round) {
+  for (int round = 0; round < options.repeat && !(outcome.proposal && outcome.proposal->entry.settled);
+       ++round) {
     for (const Motion& motion : motions) {
       const auto result = move(session, options, motion);
       if (!result) return result.error();
@@ -173,7 +171,7 @@ void print_outcome(const Session& session, const Outcome& outcome) {
   if (session.json != JsonMode::off) {
     ordered_json body = {{"moves", driven.moves}, {"robot", driven.robot}};
     if (!driven.rounds.empty()) body["rounds"] = driven.rounds;
-    body["proposal"] = proposal ? to_json(entry_of(*proposal)) : ordered_json(nullptr);
+    body["proposal"] = proposal ? to_json(proposal->entry) : ordered_json(nullptr);
     if (!driven.recordings.empty()) body["recording"] = driven.recordings.back();
     body["recordings"] = driven.recordings;
     return print_document("moves", body, session.json);
@@ -181,8 +179,8 @@ void print_outcome(const Session& session, const Outcome& outcome) {
   for (const auto& one : driven.moves) print_line(describe_move(one));
   for (const auto& recording : driven.recordings) print_line("recording " + recording);
   if (!proposal) return;
-  for (const auto& line : to_lines(*proposal)) print_line(line);
-  std::cout << wrapped_command("Next: " + next_command(*proposal), text_columns());
+  for (const auto& line : to_lines(proposal->entry)) print_line(line);
+  std::cout << wrapped_command("Next: " + next_command(proposal->entry), text_columns());
 }
 
 int finish_manual(const Session& session, const ManualOptions& options, const Result<Outcome>& outcome) {
@@ -236,13 +234,8 @@ int straight(const Session& session, const ManualOptions& options) {
 
 /// The track width inherits the error of the diameters.
 void warn_of_order(const Session& session) {
-  auto client = Client::connect(session.socket);
-  if (!client) return;
-  const auto status = client.value().call("GetStatus");
-  if (!status) return;
-  const auto body =
-      ordered_json::parse(status.value(), nullptr, false).value("status", ordered_json::object());
-  if (!body.value("calibrated", true))
+  const auto status = call_once(session.socket, "GetStatus");
+  if (status && !status.value().value("status", ordered_json::object()).value("calibrated", true))
     warn(
         "no calibration is in force: the track width inherits the error of the wheel diameters; straight "
         "first, apply, then spin");

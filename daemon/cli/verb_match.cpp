@@ -6,14 +6,13 @@
 #include <cmath>
 #include <ctime>
 #include <iostream>
-#include <memory>
 #include <nlohmann/json.hpp>
 #include <sstream>
 
 #include "calib/match.hpp"
 #include "daemon/cli/exit_codes.hpp"
+#include "daemon/cli/options.hpp"
 #include "daemon/cli/recordings.hpp"
-#include "daemon/cli/verbs.hpp"
 #include "proto/file_bytes.hpp"
 #include "proto/recording/recording.hpp"
 
@@ -106,8 +105,15 @@ ordered_json match_pair(const ordered_json& pair, calib::Matcher matcher) {
   return describe(match, processor_time() - begin);
 }
 
-int match_file(const std::string& path, calib::Matcher matcher, const UnpackLimit& limit,
-               const Session& session) {
+struct MatchOptions {
+  std::string path, matcher = "lines";
+  double unpack_limit = 0.0;  // MiB; 0: see UnpackLimit
+};
+
+int match_file(const MatchOptions& options, const Session& session) {
+  const std::string& path = options.path;
+  const UnpackLimit limit = unpack_limit_of(options.unpack_limit);
+  const calib::Matcher matcher = matcher_of(options.matcher);
   const auto bytes = read_file_bytes(path);
   if (!bytes) return report_error(bytes.error(), session.json);
   const Unpacked text =
@@ -138,22 +144,16 @@ int match_file(const std::string& path, calib::Matcher matcher, const UnpackLimi
 }  // namespace
 
 void add_match(CLI::App& app, Session& session) {
-  auto* verb = app.add_subcommand("match", "Motion between pairs of scans, JSON Lines in and out");
-  auto path = std::make_shared<std::string>();
-  verb->add_option("PAIRS", *path,
+  const auto [verb, options] =
+      add_verb(app, session, "match", "Motion between pairs of scans, JSON Lines in and out", match_file);
+  verb->add_option("PAIRS", options->path,
                    R"(lines {"reference": scan, "scan": scan, "guess": [x,y,yaw], "sigma": m})")
       ->required();
-  auto matcher = std::make_shared<std::string>("lines");
-  verb->add_option("--matcher", *matcher, "lines: point to line; brute: best of a grid; fast: hill climb")
+  verb->add_option("--matcher", options->matcher,
+                   "lines: point to line; brute: best of a grid; fast: hill climb")
       ->check(CLI::IsMember({"lines", "brute", "fast"}))
       ->capture_default_str();
-  auto limit = std::make_shared<double>(0.0);
-  add_unpack_limit(*verb, *limit);
-  verb->callback([&session, path, matcher, limit] {
-    session.run = [&session, path, matcher, limit] {
-      return match_file(*path, matcher_of(*matcher), unpack_limit_of(*limit), session);
-    };
-  });
+  add_unpack_limit(*verb, options->unpack_limit);
 }
 
 }  // namespace odomcalib::cli

@@ -6,14 +6,12 @@
 #include <array>
 #include <chrono>
 #include <iostream>
-#include <memory>
 #include <nlohmann/json.hpp>
 
 #include "daemon/cli/client.hpp"
 #include "daemon/cli/exit_codes.hpp"
 #include "daemon/cli/interrupts.hpp"
-#include "daemon/cli/numbers.hpp"
-#include "daemon/cli/verbs.hpp"
+#include "daemon/cli/options.hpp"
 
 namespace odomcalib::cli {
 namespace {
@@ -48,8 +46,7 @@ void print_event(const ordered_json& event, const Session& session) {
 Result<void> watch_state(Client& client, std::string& last, const Session& session) {
   const auto answer = client.call("GetStatus");
   if (!answer) return answer.error();
-  const auto body = ordered_json::parse(answer.value(), nullptr, false);
-  const std::string state = body.value("status", ordered_json::object()).value("state", "");
+  const std::string state = answer.value().value("status", ordered_json::object()).value("state", "");
   if (state == last) return {};
   last = state;
   const auto now = std::chrono::duration_cast<std::chrono::microseconds>(
@@ -96,11 +93,9 @@ int monitor(const MonitorOptions& options, const Session& session) {
 }  // namespace
 
 void add_monitor(CLI::App& app, Session& session) {
-  auto* verb = app.add_subcommand("monitor", "Events of the daemon as they happen, until Ctrl-C");
-  auto options = std::make_shared<MonitorOptions>();
+  const auto [verb, options] =
+      add_verb(app, session, "monitor", "Events of the daemon as they happen, until Ctrl-C", monitor);
   verb->add_option("--duration", options->duration, "s, 0: until Ctrl-C")->check(finite(0.0, 86400.0));
-  verb->callback(
-      [&session, options] { session.run = [&session, options] { return monitor(*options, session); }; });
 }
 
 }  // namespace odomcalib::cli

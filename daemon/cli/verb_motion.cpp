@@ -5,24 +5,24 @@
 
 #include <CLI/CLI.hpp>
 #include <array>
-#include <charconv>
 #include <cmath>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <vector>
 
+#include "daemon/cli/answer_documents.hpp"
 #include "daemon/cli/calibration_summary.hpp"
 #include "daemon/cli/client.hpp"
 #include "daemon/cli/exit_codes.hpp"
 #include "daemon/cli/motion_call.hpp"
-#include "daemon/cli/outputs.hpp"
+#include "daemon/cli/options.hpp"
 #include "daemon/cli/parameter_tables.hpp"
-#include "daemon/cli/plan_document.hpp"
 #include "daemon/cli/proven_apply.hpp"
 #include "daemon/cli/verbs.hpp"
 #include "proto/calibration/calibration.hpp"
 #include "proto/calibration/report_data.hpp"
 #include "proto/file_bytes.hpp"
+#include "proto/number_from.hpp"
 
 namespace odomcalib::cli {
 namespace {
@@ -101,12 +101,9 @@ int report_lost(Error error, const Solved& solved) {
 Result<std::optional<DriveErrors>> before_apply(const Session& session, const MotionOptions& options,
                                                 const RunMethod& run) {
   if (!options.apply) return std::optional<DriveErrors>();
-  auto client = Client::connect(session.socket);
-  if (!client) return client.error();
-  const auto answer = client.value().call("GetParameters");
-  if (!answer) return answer.error();
-  const auto held = ordered_json::parse(answer.value(), nullptr, false);
-  if (auto error = unprovable(held.value("parameters", ordered_json::array()))) return *error;
+  const auto held = call_once(session.socket, "GetParameters");
+  if (!held) return held.error();
+  if (auto error = unprovable(held.value().value("parameters", ordered_json::array()))) return *error;
   const auto errors = drive_errors(run);
   if (!errors) return errors.error();
   return std::optional(errors.value());
@@ -201,13 +198,11 @@ Result<ordered_json> parsed_values(const std::vector<std::string>& assignments) 
   ordered_json values = ordered_json::object();
   for (const auto& text : assignments) {
     const auto equals = text.find('=');
-    double value = 0.0;
-    const char* end = text.data() + text.size();
-    const auto parsed = equals == std::string::npos ? std::from_chars_result{end, std::errc::invalid_argument}
-                                                    : std::from_chars(text.data() + equals + 1, end, value);
-    if (parsed.ec != std::errc{} || parsed.ptr != end || equals == 0 || !std::isfinite(value))
+    const auto value =
+        equals == std::string::npos ? std::nullopt : number_from<double>(text.substr(equals + 1));
+    if (!value || equals == 0 || !std::isfinite(*value))
       return Error{ErrorCode::usage, "not NAME=VALUE with a value in m", text, "odomcalibctl params get"};
-    values[text.substr(0, equals)] = value;
+    values[text.substr(0, equals)] = *value;
   }
   return values;
 }

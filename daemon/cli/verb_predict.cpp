@@ -5,7 +5,6 @@
 #include <array>
 #include <cmath>
 #include <iostream>
-#include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
 
@@ -14,11 +13,9 @@
 #include "calib/odometry/uncertainty.hpp"
 #include "daemon/cli/exit_codes.hpp"
 #include "daemon/cli/left_out_lines.hpp"
-#include "daemon/cli/numbers.hpp"
-#include "daemon/cli/outputs.hpp"
+#include "daemon/cli/options.hpp"
 #include "daemon/cli/recordings.hpp"
 #include "daemon/cli/usable_calibration.hpp"
-#include "daemon/cli/verbs.hpp"
 #include "proto/base_quantities.hpp"
 #include "proto/calibration/calibration.hpp"
 #include "proto/calibration/discarded_json.hpp"
@@ -143,8 +140,8 @@ int predict_trajectory(const PredictOptions& options, const Session& session) {
 }  // namespace
 
 void add_predict(CLI::App& app, Session& session) {
-  auto* verb = app.add_subcommand("predict", "Dead reckoning from the ticks of a recording");
-  auto options = std::make_shared<PredictOptions>();
+  const auto [verb, options] =
+      add_verb(app, session, "predict", "Dead reckoning from the ticks of a recording", predict_trajectory);
   verb->add_option("RECORDING", options->recording, "in any form that solve reads")->required();
   verb->add_option("--calibration", options->calibration, "calibration file, or \"nominal\"")->required();
   verb->add_option("--trajectory", options->trajectory, "file to write, TUM format")->required();
@@ -156,9 +153,6 @@ void add_predict(CLI::App& app, Session& session) {
       ->expected(3)
       ->check(finite(0.0, 10.0));
   add_reading_options(*verb, options->reading);
-  verb->callback([&session, options] {
-    session.run = [&session, options] { return predict_trajectory(*options, session); };
-  });
 }
 
 }  // namespace odomcalib::cli

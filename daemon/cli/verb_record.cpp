@@ -3,14 +3,12 @@
 
 #include <CLI/CLI.hpp>
 #include <iostream>
-#include <memory>
 #include <nlohmann/json.hpp>
 
 #include "daemon/cli/client.hpp"
 #include "daemon/cli/exit_codes.hpp"
 #include "daemon/cli/interrupts.hpp"
-#include "daemon/cli/numbers.hpp"
-#include "daemon/cli/verbs.hpp"
+#include "daemon/cli/options.hpp"
 
 namespace odomcalib::cli {
 namespace {
@@ -69,12 +67,10 @@ int record(const RecordOptions& options, const Session& session) {
 }  // namespace
 
 void add_record(CLI::App& app, Session& session) {
-  auto* verb = app.add_subcommand("record", "Record without moving the robot, until Ctrl-C or for a time");
-  auto options = std::make_shared<RecordOptions>();
+  const auto [verb, options] =
+      add_verb(app, session, "record", "Record without moving the robot, until Ctrl-C or for a time", record);
   verb->add_option("NAME", options->name, "beginning of the file's name")->capture_default_str();
   verb->add_option("--duration", options->duration, "s, 0: until Ctrl-C or stop")->check(finite(0.0, 3600.0));
-  verb->callback(
-      [&session, options] { session.run = [&session, options] { return record(*options, session); }; });
 }
 
 }  // namespace odomcalib::cli

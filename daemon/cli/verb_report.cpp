@@ -2,16 +2,14 @@
 #include <CLI/CLI.hpp>
 #include <filesystem>
 #include <iostream>
-#include <memory>
 
 #include "daemon/cli/calibration_summary.hpp"
 #include "daemon/cli/exit_codes.hpp"
-#include "daemon/cli/outputs.hpp"
+#include "daemon/cli/options.hpp"
 #include "daemon/cli/parameter_tables.hpp"
 #include "daemon/cli/report_page.hpp"
 #include "daemon/cli/report_sheets.hpp"
 #include "daemon/cli/usable_calibration.hpp"
-#include "daemon/cli/verbs.hpp"
 #include "daemon/cli/write_backs.hpp"
 #include "proto/calibration/calibration.hpp"
 #include "proto/file_bytes.hpp"
@@ -83,8 +81,8 @@ int show_report(const ReportOptions& options, const Session& session) {
 }  // namespace
 
 void add_report(CLI::App& app, Session& session) {
-  auto* verb = app.add_subcommand("report", "A calibration file as text, JSON or HTML");
-  auto options = std::make_shared<ReportOptions>();
+  const auto [verb, options] =
+      add_verb(app, session, "report", "A calibration file as text, JSON or HTML", show_report);
   verb->add_option("CALIBRATION", options->calibration, "file that solve or calibrate wrote")->required();
   verb->add_option("--html,--out", options->html, "HTML page to write");
   verb->add_option("--sheet", options->sheet, "page to write for the mechanic: what was found where");
@@ -93,8 +91,6 @@ void add_report(CLI::App& app, Session& session) {
   verb->add_option("--history", options->history,
                    "what was written to the controller, for page and --verbose: output of history --json, or "
                    "the service's state folder; default: what the service here says");
-  verb->callback(
-      [&session, options] { session.run = [&session, options] { return show_report(*options, session); }; });
 }
 
 }  // namespace odomcalib::cli

@@ -4,7 +4,6 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <iostream>
-#include <memory>
 #include <set>
 
 #include "calib/ingest/one_sensor.hpp"
@@ -13,12 +12,10 @@
 #include "daemon/cli/calibration_summary.hpp"
 #include "daemon/cli/exit_codes.hpp"
 #include "daemon/cli/export_formats.hpp"
-#include "daemon/cli/numbers.hpp"
-#include "daemon/cli/outputs.hpp"
+#include "daemon/cli/options.hpp"
 #include "daemon/cli/recordings.hpp"
 #include "daemon/cli/report_page.hpp"
 #include "daemon/cli/settings.hpp"
-#include "daemon/cli/verbs.hpp"
 #include "odomcalib_version.hpp"
 #include "proto/calibration/calibration.hpp"
 #include "proto/calibration/scale.hpp"
@@ -125,8 +122,8 @@ int solve_recordings(const SolveArguments& options, const Session& session) {
 }  // namespace
 
 void add_solve(CLI::App& app, Session& session) {
-  auto* verb = app.add_subcommand("solve", "Calibrate from recordings of one robot");
-  auto options = std::make_shared<SolveArguments>();
+  const auto [verb, options] =
+      add_verb(app, session, "solve", "Calibrate from recordings of one robot", solve_recordings);
   verb->add_option("RECORDING", options->recordings,
                    "JSON Lines, LCM log, ROS bag, rosbag2, MCAP, CARMEN log, tuple file")
       ->required();
@@ -151,10 +148,7 @@ void add_solve(CLI::App& app, Session& session) {
       ->check(finite(0.0, settings::kMostOdometer_km));
   verb->add_option("--place", options->place, "where the robot drove: kept in file and report");
   verb->add_option("--note", options->note, "surface, load, tyres: kept in file and report");
-  verb->callback([&session, options] {
-    session.takes_much_memory = true;
-    session.run = [&session, options] { return solve_recordings(*options, session); };
-  });
+  verb->parse_complete_callback([&session] { session.takes_much_memory = true; });
 }
 
 }  // namespace odomcalib::cli

@@ -1,8 +1,12 @@
 // A page on loopback that shows what the robot does while it does it. It asks and listens; it holds no lease.
 #include <fmt/format.h>
+#include <lcm/lcm.h>
+#include <poll.h>
 
 #include <CLI/CLI.hpp>
+#include <array>
 #include <chrono>
+#include <functional>
 #include <iostream>
 #include <memory>
 #include <mutex>
@@ -12,13 +16,11 @@
 #include "daemon/cli/client.hpp"
 #include "daemon/cli/exit_codes.hpp"
 #include "daemon/cli/interrupts.hpp"
-#include "daemon/cli/live/lcm_feed.hpp"
 #include "daemon/cli/live/live_page.hpp"
 #include "daemon/cli/live/live_state.hpp"
 #include "daemon/cli/live/page_server.hpp"
-#include "daemon/cli/numbers.hpp"
+#include "daemon/cli/options.hpp"
 #include "daemon/cli/settings.hpp"
-#include "daemon/cli/verbs.hpp"
 
 namespace odomcalib::cli {
 namespace {
@@ -51,9 +53,51 @@ class Board {
 Result<ordered_json> ask(Client& client, const char* method, const char* member) {
   const auto answer = client.call(method, ordered_json::object(), settings::kAnswerWithin_ms);
   if (!answer) return answer.error();
-  const auto body = ordered_json::parse(answer.value(), nullptr, false);
-  return body.is_object() ? body.value(member, ordered_json()) : ordered_json();
+  return answer.value().is_object() ? answer.value().value(member, ordered_json()) : ordered_json();
 }
+
+constexpr std::array kChannels = {"ODOM", "ODOM_CALIBRATED", "SCAN", "PROGRESS", "RESULT"};
+
+/// Messages that the daemon publishes on LCM, as they arrive.
+class LcmFeed {
+ public:
+  /// @param channel without prefix
+  using Take = std::function<void(std::string_view channel, std::string_view bytes)>;
+  /// Null when the URL cannot be opened.
+  static std::unique_ptr<LcmFeed> open(const std::string& url, const std::string& prefix, Take take) {
+    lcm_t* lcm = lcm_create(url.c_str());
+    return lcm != nullptr ? std::make_unique<LcmFeed>(lcm, prefix, std::move(take)) : nullptr;
+  }
+  LcmFeed(lcm_t* lcm, std::string prefix, Take take)
+      : lcm_(lcm), prefix_(std::move(prefix)), take_(std::move(take)) {
+    for (const char* channel : kChannels)
+      lcm_subscribe(lcm_, (prefix_ + channel).c_str(), &LcmFeed::on_message, this);
+  }
+  ~LcmFeed() { lcm_destroy(lcm_); }
+  LcmFeed(const LcmFeed&) = delete;
+  LcmFeed& operator=(const LcmFeed&) = delete;
+  /// Waits for messages for so long, and hands over those that came. Returns early when a signal comes.
+  void serve(int timeout_ms) {
+    pollfd ready{lcm_get_fileno(lcm_), POLLIN, 0};
+    if (poll(&ready, 1, timeout_ms) <= 0) return;
+    for (int taken = 0; taken < settings::kMostMessages && lcm_handle_timeout(lcm_, 0) > 0; ++taken) {
+    }
+  }
+
+ private:
+  // A subscription is a regular expression, which a prefix may happen to be: the name decides.
+  static void on_message(const lcm_recv_buf_t* buffer, const char* channel, void* self) {
+    const auto& feed = *static_cast<const LcmFeed*>(self);
+    std::string_view name = channel;
+    if (!name.starts_with(feed.prefix_)) return;
+    name.remove_prefix(feed.prefix_.size());
+    feed.take_(name, {static_cast<const char*>(buffer->data), buffer->data_size});
+  }
+
+  lcm_t* lcm_;
+  std::string prefix_;
+  Take take_;
+};
 
 /// The daemon as this program sees it: a connection that may be lost and come back, and its messages.
 class Watch {
@@ -170,15 +214,12 @@ int view(const Options& options, const Session& session) {
 }  // namespace
 
 void add_view(CLI::App& app, Session& session) {
-  auto* verb =
-      app.add_subcommand("view", "Page on this machine that shows scan, paths and progress, until Ctrl-C");
-  auto options = std::make_shared<Options>();
+  const auto [verb, options] = add_verb(
+      app, session, "view", "Page on this machine that shows scan, paths and progress, until Ctrl-C", view);
   verb->add_option("--port", options->port, "on 127.0.0.1, 0: any that is free")
       ->check(CLI::Range(0, 65535))
       ->capture_default_str();
   verb->add_option("--duration", options->duration, "s, 0: until Ctrl-C")->check(finite(0.0, 86400.0));
-  verb->callback(
-      [&session, options] { session.run = [&session, options] { return view(*options, session); }; });
 }
 
 }  // namespace odomcalib::cli

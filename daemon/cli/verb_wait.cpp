@@ -4,17 +4,14 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <chrono>
-#include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <thread>
 
-#include "daemon/cli/answers.hpp"
 #include "daemon/cli/client.hpp"
 #include "daemon/cli/exit_codes.hpp"
-#include "daemon/cli/numbers.hpp"
+#include "daemon/cli/options.hpp"
 #include "daemon/cli/settings.hpp"
-#include "daemon/cli/verbs.hpp"
 
 namespace odomcalib::cli {
 namespace {
@@ -83,7 +80,7 @@ Error too_late(const WaitOptions& options, const std::string& missing) {
           "odomcalibd", "odomcalibctl check"};
 }
 
-int wait_for(const Session& session, const WaitOptions& options) {
+int wait_for(const WaitOptions& options, const Session& session) {
   const Deadline deadline(options.timeout);
   bool answered = false;
   std::string said;
@@ -111,8 +108,8 @@ int wait_for(const Session& session, const WaitOptions& options) {
 }  // namespace
 
 void add_wait(CLI::App& app, Session& session) {
-  auto options = std::make_shared<WaitOptions>();
-  auto* wait = app.add_subcommand("wait", "Wait until the daemon is ready for a motion, or idle");
+  const auto [wait, options] =
+      add_verb(app, session, "wait", "Wait until the daemon is ready for a motion, or idle", wait_for);
   wait->add_option("--until", options->until,
                    "ready: nothing that check looks at fails, and nothing runs; idle: nothing runs")
       ->check(CLI::IsMember({"ready", "idle"}))
@@ -120,8 +117,6 @@ void add_wait(CLI::App& app, Session& session) {
   wait->add_option("--timeout", options->timeout, "s")
       ->check(finite(0.0, settings::kLongestWait_s))
       ->capture_default_str();
-  wait->callback(
-      [&session, options] { session.run = [&session, options] { return wait_for(session, *options); }; });
 }
 
 }  // namespace odomcalib::cli

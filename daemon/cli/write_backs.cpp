@@ -54,11 +54,9 @@ Result<std::vector<WriteBack>> entries_of_folder(const fs::path& state_folder) {
 }
 
 Result<std::vector<WriteBack>> entries_of_service(const std::string& socket) {
-  auto client = Client::connect(socket);
-  if (!client) return client.error();
-  const auto answer = client.value().call("History", ordered_json::object(), settings::kAnswerWithin_ms);
+  const auto answer = call_once(socket, "History", ordered_json::object(), settings::kAnswerWithin_ms);
   if (!answer) return answer.error();
-  return entries_in(ordered_json::parse(answer.value(), nullptr, false), socket);
+  return entries_in(answer.value(), socket);
 }
 
 /// Empty: it has none on this machine.

@@ -24,7 +24,7 @@ class Manual : public ServiceLoop {
   /// As params set does it.
   void write(const cli::Proposal& proposal) {
     json values = json::object();
-    for (const auto& [name, q] : proposal.parameters) values[name] = q.value;
+    for (const auto& [name, q] : proposal.entry.parameters) values[name] = q.value;
     ASSERT_TRUE(run_until([this] { return ready(); }, 10.0)) << "values are written while the axes are off";
     run(0.5);
     TestClient caller(folder_ / "control");
@@ -34,16 +34,16 @@ class Manual : public ServiceLoop {
   }
   const sim::Geometry& truth() const { return robot_->truth(); }
   static double value(const cli::Proposal& proposal, const std::string& name) {
-    for (const auto& [key, q] : proposal.parameters)
+    for (const auto& [key, q] : proposal.entry.parameters)
       if (key == name) return q.value;
     ADD_FAILURE() << name;
     return 0.0;
   }
   /// Right to a thousandth, and within three deviations.
   static void expect_found(const cli::Proposal& proposal, const std::vector<double>& truth) {
-    ASSERT_EQ(proposal.parameters.size(), truth.size());
+    ASSERT_EQ(proposal.entry.parameters.size(), truth.size());
     for (std::size_t k = 0; k < truth.size(); ++k) {
-      const auto& [name, q] = proposal.parameters[k];
+      const auto& [name, q] = proposal.entry.parameters[k];
       std::printf("%-21s true %.6f found %.6f +- %.6f: %+.4f %%, %+.2f sigmas\n", name.c_str(), truth[k],
                   q.value, q.std, 100.0 * (q.value / truth[k] - 1.0), (q.value - truth[k]) / q.std);
       EXPECT_NEAR(q.value / truth[k], 1.0, 1e-3) << name;
@@ -113,12 +113,12 @@ TEST_P(Lengths, S1_03_S1_04_a_tape_and_a_mark_on_the_floor_are_right_to_a_thousa
   EXPECT_FALSE(cli::straight_proposal(lines, {1.0, 1.0})) << "two values for three ways";
   const auto straight = cli::straight_proposal(lines, ways);
   ASSERT_TRUE(straight) << straight.error().text();
-  EXPECT_EQ(straight.value().used, 3U) << "the ways back were not measured";
+  EXPECT_EQ(straight.value().entry.used, 3U) << "the ways back were not measured";
   const double mean = 0.15 * true_scale();
   const double left = value(straight.value(), "left_wheel_diameter");
   const double right = value(straight.value(), "right_wheel_diameter");
   EXPECT_NEAR((left + right) / 2.0 / mean, 1.0, 1e-3);
-  EXPECT_LT(std::abs((left + right) / 2.0 - mean), 3.0 * straight.value().parameters[0].second.std);
+  EXPECT_LT(std::abs((left + right) / 2.0 - mean), 3.0 * straight.value().entry.parameters[0].second.std);
   write(straight.value());
   cli::DrivenMoves turns;
   for (int k = 0; k < 3; ++k)
@@ -156,7 +156,7 @@ TEST_P(Squares, S1_07_driven_both_ways_give_E_d_and_E_b_within_three_deviations)
   expect_found(square.value(), {truth().left_diameter, truth().right_diameter, truth().track_width});
   const std::array expected{truth().right_diameter / truth().left_diameter, truth().track_width / 0.4};
   for (std::size_t k = 0; k < 2; ++k) {
-    const auto& [name, q] = square.value().errors[k];
+    const auto& [name, q] = square.value().entry.errors[k];
     std::printf("%s true %.6f found %.6f +- %.6f: %+.2f sigmas\n", name.c_str(), expected[k], q.value, q.std,
                 (q.value - expected[k]) / q.std);
     EXPECT_LT(std::abs(q.value - expected[k]), 3.0 * q.std)

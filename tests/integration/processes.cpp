@@ -176,7 +176,7 @@ std::string RobotAndDaemon::status() const {
   if (!client) return "";
   const auto answer = client.value().call("GetStatus");
   if (!answer) return "";
-  return nlohmann::json::parse(answer.value(), nullptr, false)["status"].dump();
+  return nlohmann::json(answer.value())["status"].dump();
 }
 
 bool RobotAndDaemon::ready() const {

@@ -7,6 +7,7 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
+#include "daemon/cli/answer_documents.hpp"
 #include "daemon/cli/calibration_document.hpp"
 #include "daemon/cli/export_configurations.hpp"
 #include "daemon/cli/export_formats.hpp"
@@ -16,7 +17,6 @@
 #include "daemon/cli/report_page.hpp"
 #include "daemon/cli/report_sections.hpp"
 #include "daemon/cli/report_sheets.hpp"
-#include "daemon/cli/status_document.hpp"
 #include "proto/calibration/report_data.hpp"
 #include "proto/calibration/scale.hpp"
 #include "tests/value_of.hpp"

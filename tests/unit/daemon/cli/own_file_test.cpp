@@ -7,7 +7,7 @@
 
 #include "daemon/cli/diff_drive_place.hpp"
 #include "daemon/cli/lidar_joint_place.hpp"
-#include "daemon/cli/own_file.hpp"
+#include "daemon/cli/text_edit.hpp"
 #include "proto/file_bytes.hpp"
 #include "tests/temporary_folder.hpp"
 

@@ -1,5 +1,4 @@
-// Plan of a motion, before it is driven: the way, the space that it requires as a drawing with numbers,
-// and what limits it.
+// Answers of the service, for people: its status, and the plan of a motion before it is driven.
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>
@@ -9,6 +8,9 @@
 #include "daemon/cli/document.hpp"
 
 namespace odomcalib::cli {
+
+/// @param status as docs/schema/status-1.json has it
+Document describe_status(const nlohmann::ordered_json& status);
 
 /// @param plan result of a motion's method with `dry_run` (docs/schema/plan-1.json)
 Document describe_plan(const nlohmann::ordered_json& plan);

@@ -1,5 +1,8 @@
-#include "daemon/cli/outputs.hpp"
+#include "daemon/cli/options.hpp"
 
+#include <fmt/format.h>
+
+#include <cmath>
 #include <filesystem>
 
 #include "proto/file_bytes.hpp"
@@ -37,6 +40,18 @@ Result<void> check_apart(const NamedFile& output, const std::vector<NamedFile>& 
 }
 
 }  // namespace
+
+CLI::Validator finite(double least, double most) {
+  const bool bounded = least > std::numeric_limits<double>::lowest();
+  const std::string wanted = bounded ? fmt::format("a number from {} to {}", least, most) : "a finite number";
+  const auto problem = [=](std::string& text) {
+    double value = 0.0;
+    const bool good =
+        CLI::detail::lexical_cast(text, value) && std::isfinite(value) && value >= least && value <= most;
+    return good ? std::string() : fmt::format("\"{}\" is not {}", text, wanted);
+  };
+  return {problem, bounded ? fmt::format("in [{} - {}]", least, most) : ""};
+}
 
 Result<void> check_outputs(const std::vector<NamedFile>& outputs, const std::vector<NamedFile>& inputs) {
   std::vector<NamedFile> taken = inputs;
