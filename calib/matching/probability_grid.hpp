@@ -12,8 +12,8 @@
 namespace odomcalib::calib::matching {
 
 struct GridOptions {
-  double cell = settings::kGridCell_m;           ///< m
-  double half_size = settings::kGridHalfSize_m;  ///< m, the map is a square about the origin
+  double cell;                        ///< m
+  double half_size;                   ///< m, the map is a square about the origin
   double hit = settings::kGridHit;    ///< probability of a cell to be occupied, given that a beam ended in it
   double pass = settings::kGridPass;  ///< the same, given that a beam passed it
   double limit = settings::kGridLimit;  ///< no cell becomes more certain, so that what moved can be unlearnt

@@ -148,8 +148,6 @@ inline constexpr int kClimbHalvings = 4;
 
 // --- Probability grid -----------------------------------------------------------------------------------
 
-/// m, side of a cell, and half the side of a map about the origin. Chosen, untried.
-inline constexpr double kGridCell_m = 0.05, kGridHalfSize_m = 15.0;
 /// Probability of a cell to be occupied, given that a beam ended in it, and that one passed it. Chosen,
 /// untried.
 inline constexpr double kGridHit = 0.7, kGridPass = 0.4;

@@ -48,7 +48,7 @@ double p_value_of_slant(const RangeEvidence& evidence);
 
 struct PlaceOptions {
   double range_noise = matching::settings::kUsualRangeNoise_m;  ///< m
-  double gate = settings::kPlaceGate_m;  ///< m, largest difference of a range from what the map expects
+  double gate = settings::kFirstGate_m;  ///< m, largest difference of a range from what the map expects
   int iterations = settings::kMostPlaceSteps;
   RangeErrorTerms range_error = RangeErrorTerms::Zero();  ///< taken out of every reading
   /// m, where the sensor gives up; 0: nobody knows. Of walls near it only the readings come through that

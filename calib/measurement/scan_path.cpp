@@ -36,9 +36,7 @@ class Mapper {
       : recording_(recording),
         mount_(vehicle::to_base(parameters).mount),
         trajectory_(model.trajectory(parameters, effects)),
-        options_{.range_noise = options.range_noise,
-                 .gate = settings::kFirstGate_m,
-                 .range_max = range_max(recording)},
+        options_{.range_noise = options.range_noise, .range_max = range_max(recording)},
         trace_ranges_(options.trace_ranges) {
     for (std::size_t k = 0; k < recording.scans.size(); ++k) {
       const Scan& scan = recording.scans[k];

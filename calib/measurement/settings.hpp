@@ -60,8 +60,6 @@ inline constexpr double kLeastEigenvalue = 0.01;
 inline constexpr double kPlaceSettled = 0.1;
 /// Steps before they are halved. Chosen, sensitive.
 inline constexpr int kWholeSteps = 5;
-/// m, first gate: largest difference of a range from what the map expects. Chosen, untried.
-inline constexpr double kPlaceGate_m = 0.3;
 /// Share of the gate that is left after a step. Chosen, sensitive.
 inline constexpr double kPlaceGateShrinks = 0.4;
 /// m, and deviations of a range: the last gate, whichever is wider. Chosen, sensitive.

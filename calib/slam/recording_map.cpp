@@ -74,12 +74,11 @@ std::vector<Eigen::Vector2d> seen_in_map(const std::vector<matching::Surface>& s
 }
 
 matching::GridOptions grid_about(const std::vector<Eigen::Vector2d>& seen) {
-  matching::GridOptions options;
-  options.half_size = settings::kFinestCell_m;
+  double half_size = settings::kFinestCell_m;
   for (const Eigen::Vector2d& p : seen)
-    options.half_size = std::max(options.half_size, p.cwiseAbs().maxCoeff() + settings::kFinestCell_m);
-  options.cell = std::max(settings::kFinestCell_m, options.half_size / settings::kMostCells);
-  return options;
+    half_size = std::max(half_size, p.cwiseAbs().maxCoeff() + settings::kFinestCell_m);
+  return {.cell = std::max(settings::kFinestCell_m, half_size / settings::kMostCells),
+          .half_size = half_size};
 }
 
 /// Centres of the cells in which something was seen, each once.

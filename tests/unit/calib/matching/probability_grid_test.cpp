@@ -10,7 +10,7 @@ namespace {
 const std::vector<Eigen::Vector2d> kBeam = {{2.02, 0.02}};
 
 TEST(ProbabilityGrid, S2_40_one_beam_frees_its_path_and_occupies_its_end) {
-  ProbabilityGrid grid({});
+  ProbabilityGrid grid({.cell = 0.05, .half_size = 15.0});
   grid.insert({}, kBeam);
   EXPECT_NEAR(grid.probability({2.02, 0.02}), 0.7, 1e-6);
   EXPECT_NEAR(grid.probability({1.0, 0.02}), 0.4, 1e-6);
@@ -20,7 +20,7 @@ TEST(ProbabilityGrid, S2_40_one_beam_frees_its_path_and_occupies_its_end) {
 }
 
 TEST(ProbabilityGrid, odds_of_independent_beams_multiply_up_to_the_limit) {
-  ProbabilityGrid grid({});
+  ProbabilityGrid grid({.cell = 0.05, .half_size = 15.0});
   grid.insert({}, kBeam);
   grid.insert({}, kBeam);
   const double odds = 0.7 / 0.3;
@@ -31,7 +31,7 @@ TEST(ProbabilityGrid, odds_of_independent_beams_multiply_up_to_the_limit) {
 }
 
 TEST(ProbabilityGrid, what_moved_away_is_unlearnt) {
-  ProbabilityGrid grid({});
+  ProbabilityGrid grid({.cell = 0.05, .half_size = 15.0});
   for (int i = 0; i < 100; ++i) grid.insert({}, kBeam);
   const std::vector<Eigen::Vector2d> farther = {{4.02, 0.04}};
   for (int i = 0; i < 20; ++i) grid.insert({}, farther);
@@ -39,7 +39,7 @@ TEST(ProbabilityGrid, what_moved_away_is_unlearnt) {
 }
 
 TEST(ProbabilityGrid, the_sensor_may_stand_anywhere_and_beams_may_leave_the_map) {
-  ProbabilityGrid grid({.half_size = 3.0});
+  ProbabilityGrid grid({.cell = 0.05, .half_size = 3.0});
   grid.insert({1.0, 1.0, std::acos(-1.0) / 2.0}, kBeam);  // looks along y
   EXPECT_LT(grid.probability({1.0, 2.0}), 0.5);
   grid.insert({}, std::vector<Eigen::Vector2d>{{-50.0, 0.02}, {1e300, 1e300}});
