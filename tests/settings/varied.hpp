@@ -2,6 +2,8 @@
 // otherwise.
 #pragma once
 
+#include <fcntl.h>
+#include <sys/resource.h>
 #include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -17,11 +19,12 @@
 namespace odomcalib_varied {
 
 inline constexpr std::size_t kMost = 2048;
-/// s, after which a calibration with another number is given up.
-inline constexpr unsigned kPatience_s = 120;
+/// s of a processor, after which a calibration with another number is given up.
+inline constexpr rlim_t kPatience_s = 120;
 
 /// Where a program first reads a setting, it goes on in three processes: with the value as it is, with its
-/// half and with its double. What was done before is done once for all of them.
+/// half and with its double. What was done before is done once for all of them. Each of the others writes its
+/// standard output to a file "stdout".
 ///
 /// ODOMCALIB_VARIED names the folder in which the others work, each in its own: 12_0.5 halves number 12.
 /// A file "done" in it has the numbers that are to be left alone, one a line. Afterwards "read" has the
@@ -74,7 +77,10 @@ class Varied {
     const std::string own = folder_ + "/" + std::to_string(number) + "_" + factor;
     mkdir(own.c_str(), 0755);
     if (chdir(own.c_str()) != 0) _exit(126);
-    alarm(kPatience_s);
+    if (const int out = open("stdout", O_CREAT | O_TRUNC | O_WRONLY, 0644); out >= 0)
+      dup2(out, STDOUT_FILENO);
+    const rlimit patience{kPatience_s, kPatience_s};
+    setrlimit(RLIMIT_CPU, &patience);
     return true;
   }
 
@@ -91,19 +97,33 @@ inline Varied& varied() {
 
 }  // namespace odomcalib_varied
 
-/// The value of a setting, or what the environment makes of it. What the compiler must know stays as it is.
+/// A number times its factor.
+template <typename Value>
+Value odomcalib_scaled(const Value& value, double factor) {
+  if (factor == 1.0) return value;
+  const double changed = static_cast<double>(value) * factor;
+  if constexpr (std::is_floating_point_v<Value>)
+    return static_cast<Value>(changed);
+  else  // A count keeps at least one, and the half of one is one.
+    return value > Value{0} ? std::max(Value{1}, static_cast<Value>(changed)) : static_cast<Value>(changed);
+}
+/// A list, whose numbers change together.
+template <typename Value, std::size_t kSize>
+std::array<Value, kSize> odomcalib_scaled(std::array<Value, kSize> values, double factor) {
+  for (Value& value : values) value = odomcalib_scaled(value, factor);
+  return values;
+}
+
+/// The value of a setting, or what the environment makes of it.
+template <int kNumber, typename Value>
+Value odomcalib_varied_now(const Value& value) {
+  return odomcalib_scaled(value, odomcalib_varied::varied().factor_on(kNumber));
+}
+
+/// The same where the compiler may have to know the value: then it stays as it is.
 template <int kNumber, typename Value>
 constexpr Value odomcalib_varied_value(const Value& value) {
-  if constexpr (!std::is_arithmetic_v<Value> || std::is_same_v<Value, bool>) {
-    return value;
-  } else {
-    if (std::is_constant_evaluated()) return value;
-    const double factor = odomcalib_varied::varied().factor_on(kNumber);
-    if (factor == 1.0) return value;
-    const double changed = static_cast<double>(value) * factor;
-    if constexpr (std::is_floating_point_v<Value>)
-      return static_cast<Value>(changed);
-    else  // A count keeps at least one, and the half of one is one.
-      return value > Value{0} ? std::max(Value{1}, static_cast<Value>(changed)) : static_cast<Value>(changed);
-  }
+  if constexpr (std::is_same_v<Value, bool>) return value;
+  if (std::is_constant_evaluated()) return value;
+  return odomcalib_varied_now<kNumber>(value);
 }
