@@ -10,7 +10,7 @@ inline constexpr double kChangedLevel = 0.01;
 /// Confidence level of intervals. Chosen: what reports state everywhere.
 inline constexpr double kIntervalLevel = 0.95;
 /// Share of the largest eigenvalue of a correlation matrix below which a direction counts as not measured:
-/// rounding. Chosen, untried.
+/// rounding. Chosen, insensitive.
 inline constexpr double kNoInformation = 1e-9;
 
 }  // namespace odomcalib::calib::comparison::settings

@@ -15,7 +15,7 @@ namespace odomcalib::calib::estimation::settings {
 inline constexpr std::size_t kMostLookedAt = 3000;
 /// The same while each of several mistakes is tried on the scans. Chosen: a minute at 10 Hz.
 inline constexpr std::size_t kMostTried = 600;
-/// Motions of half a second that a judgement takes. Chosen, untried.
+/// Motions of half a second that a judgement takes. Chosen, insensitive.
 inline constexpr std::size_t kFewestMotions = 20;
 /// Share of the reference's rotation that the counts explain: below the first they contradict it, above the
 /// second they agree. Measured: sound simulated recordings have 0.93 to 0.99, clocks apart by seconds 0 to
@@ -26,7 +26,8 @@ inline constexpr double kLeftOver = 0.4;
 /// s, step and reach of the search for clocks that were set apart. Chosen: people start recorders within a
 /// minute of each other.
 inline constexpr double kClockStep_s = 0.1, kClockReach_s = 60.0;
-/// Relative difference of the lengths of two streams that may be one of their clocks' rates. Chosen, untried.
+/// Relative difference of the lengths of two streams that may be one of their clocks' rates. Chosen,
+/// insensitive.
 inline constexpr double kSpansApart = 0.05;
 /// Counts that a wheel may fall by and still count up only. Derived: an edge seen twice.
 inline constexpr int kEdge = 2;
@@ -38,13 +39,14 @@ inline constexpr double kAgainstCounting = 0.05;
 /// rad in half a second, by which a motion contradicts the counts, and the share of that which may be left
 /// with a direction. Chosen: no match is off by the first.
 inline constexpr double kContradicting_rad = 0.1, kLeftWithDirection = 0.3;
-/// m, nearly straight on in all, that show the unit of odometry. Chosen, untried.
+/// m, nearly straight on in all, that show the unit of odometry. Chosen, insensitive.
 inline constexpr double kStraightOn_m = 0.5;
-/// rad, turned in all, after which left and right counts cannot be the same. Chosen, untried.
+/// rad, turned in all, after which left and right counts cannot be the same. Chosen, insensitive.
 inline constexpr double kTurned_rad = 1.0;
 /// Ratio of a length to its nominal value, less one. Chosen: nominal values are right to that.
 inline constexpr double kNearNominal = 0.1;
-/// Ratios of the angles that a scan was sent with to those that are stated, which are tried. Chosen, untried.
+/// Ratios of the angles that a scan was sent with to those that are stated, which are tried. Chosen,
+/// sensitive.
 inline constexpr std::array kAngleFactors = {0.75, 4.0 / 3.0, 0.5, 2.0, 2.0 / 3.0, 1.5};
 /// Rounds of bounded residuals. Chosen, insensitive.
 inline constexpr int kGainRounds = 4;
@@ -67,7 +69,7 @@ inline constexpr std::size_t kPairsForOwnNoise = 100;
 inline constexpr double kLinearReach = 1.0;
 /// Steps that are tried, each ten times as damped as the one before. Chosen, insensitive.
 inline constexpr int kMostDampings = 8;
-/// Component of a direction without information, from which a parameter is named. Chosen, untried.
+/// Component of a direction without information, from which a parameter is named. Chosen, insensitive.
 inline constexpr double kNamedComponent = 0.3;
 
 // --- Path fit --------------------------------------------------------------------------------------------
@@ -143,29 +145,29 @@ inline constexpr double kMomentReach_s = 2.0;
 /// Relative deviation of the scale of a MEMS gyro. Published: +-3 % (MPU-6050, product specification).
 inline constexpr double kGyroScale = 0.03;
 /// Standard deviations at which a gyro's scale is another, or its turns contradict the lidar's. Chosen,
-/// untried.
+/// insensitive.
 inline constexpr double kGyroPlain = 4.0;
 /// rad/s, deviation of a gyro's bias before anything is known. Chosen; the same specification states +-20
 /// deg/s.
 inline constexpr double kGyroBias = 0.1;
-/// s, deviation of a gyro's clock about the best of the coarse search. Chosen, untried.
+/// s, deviation of a gyro's clock about the best of the coarse search. Chosen, sensitive.
 inline constexpr double kGyroOffset_s = 0.1;
-/// s, to either side, over which that clock is searched. Chosen, untried.
+/// s, to either side, over which that clock is searched. Chosen, sensitive.
 inline constexpr double kGyroReach_s = 0.5;
-/// s, of that search. Chosen, untried.
+/// s, of that search. Chosen, sensitive.
 inline constexpr double kGyroStep_s = 0.02;
-/// s, between samples of a gyro over which nothing is integrated. Chosen, untried.
+/// s, between samples of a gyro over which nothing is integrated. Chosen, insensitive.
 inline constexpr double kGyroHole_s = 0.1;
-/// s, of an interval between pairs, where the gyro alone sees the turn. Chosen, untried.
+/// s, of an interval between pairs, where the gyro alone sees the turn. Chosen, sensitive.
 inline constexpr double kBetweenPairs_s = 0.5;
 /// rad, both ways together, that a verdict on a gyro needs. Chosen: half a turn.
 inline constexpr double kLeastGyroTurn_rad = math::kPi;
-/// Share of a gyro's variance that the wheels must explain. Chosen, untried.
+/// Share of a gyro's variance that the wheels must explain. Chosen, sensitive.
 inline constexpr double kLeastGyroShare = 0.5;
-/// Intervals that a verdict on a gyro needs. Chosen, untried.
+/// Intervals that a verdict on a gyro needs. Chosen, insensitive.
 inline constexpr std::size_t kFewestGyroTurns = 20;
 /// Ratio of a gyro's turns to the robot's, or its inverse, from which it is stated as a factor. Chosen,
-/// untried.
+/// sensitive.
 inline constexpr double kGyroFactor = 2.0;
 
 // --- Settling --------------------------------------------------------------------------------------------

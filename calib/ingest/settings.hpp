@@ -46,7 +46,7 @@ inline constexpr double kSentAtOnce = 0.1;
 inline constexpr double kMostTurns = 1.15;
 /// rad that a scan spans whose sensor sees all round. Chosen: 350 degrees.
 inline constexpr double kAllRoundScan_rad = 6.1;
-/// Turns, of angles that look like degrees. Chosen, untried.
+/// Turns, of angles that look like degrees. Chosen, insensitive.
 inline constexpr double kTurnsInDegrees = 4.0;
 
 // --- Parts of turns, repeated scans, beams of a wandering head
@@ -56,7 +56,7 @@ inline constexpr double kTurnsInDegrees = 4.0;
 /// precision.
 inline constexpr double kSameStep = 1e-4;
 /// Steps, by which the first beam of a part may miss the one after the last beam of the part before. Chosen,
-/// untried.
+/// insensitive.
 inline constexpr double kNextBeam = 0.6;
 /// Scans that a judgement on the whole stream takes. Chosen, insensitive.
 inline constexpr std::size_t kFewestParts = 20;
@@ -86,7 +86,8 @@ inline constexpr double kNearlyOneTurn = 0.02;
 /// m, median reading of a recording. Chosen: lidars that measure 80 m see nothing at most bearings; robots
 /// that fit on a desk see their walls at 0.2 m.
 inline constexpr double kFarthestMedian_m = 60.0, kNearestMedian_m = 0.02;
-/// m, where the median reading lies for most robots. Only the unit that is nearest is named. Chosen, untried.
+/// m, where the median reading lies for most robots. Only the unit that is nearest is named. Chosen,
+/// insensitive.
 inline constexpr double kUsualMedian_m = 2.5;
 /// Scans that are looked at, evenly spread. Chosen, insensitive.
 inline constexpr std::size_t kScansLookedAt = 200;
@@ -110,7 +111,7 @@ inline constexpr std::size_t kPhantomParts = 8, kPhantomPartsNeeded = 6;
 
 /// Share of range_max from which a reading is no surface anyway (matching::far_limit). Derived from there.
 inline constexpr double kNearRangeMax = 1.0 - matching::settings::kNoiseAfar;
-/// Neighbours on either side. Chosen, untried.
+/// Neighbours on either side. Chosen, insensitive.
 inline constexpr std::size_t kPhantomBeside = 5;
 
 // --- Poses -----------------------------------------------------------------------------------------------
@@ -122,7 +123,7 @@ inline constexpr double kPoseStep = 0.01;
 /// recorder starts one of them a little later, and a reference loses sight for a moment; what a robot drives
 /// in a fifth of the time may be what a parameter needs.
 inline constexpr double kPosesCover = 0.8;
-/// Steps that a judgement takes. Chosen, untried.
+/// Steps that a judgement takes. Chosen, insensitive.
 inline constexpr std::size_t kFewestPoseSteps = 30;
 /// Share of the way that goes sideways: of poses that may contradict their heading, and of those that follow
 /// it. Derived: 0.64 where heading and way have nothing to do with each other; wheels slip by a few per cent,
@@ -143,7 +144,7 @@ inline constexpr double kOdometryStep_m = 0.02, kOdometryStep_rad = 0.1;
 /// Sideways over ahead, of a frame that is turned: half a degree, which makes lengths 0.004 % longer, less
 /// than their deviations. Measured: below 0.004 in 16 recordings of other people's robots.
 inline constexpr double kTurnedFrame = 0.0087;
-/// Standard deviations of that. Chosen, untried.
+/// Standard deviations of that. Chosen, insensitive.
 inline constexpr double kPlainlyTurned = 5.0;
 /// Share of the way that goes sideways and that no frame explains, of a yaw from elsewhere. Measured: below
 /// 0.005 in the same recordings; 0.1 with the yaw of a filter.
@@ -174,11 +175,11 @@ inline constexpr double kReportedJitter_s = 5e-3;
 
 // --- Contest of stamps -----------------------------------------------------------------------------------
 
-/// Rounds in which the errors that count and the share settle each other. Chosen, untried.
+/// Rounds in which the errors that count and the share settle each other. Chosen, insensitive.
 inline constexpr int kContestRounds = 5;
-/// Times the spread, of an error that counts in full. Chosen, untried.
+/// Times the spread, of an error that counts in full. Chosen, insensitive.
 inline constexpr double kContestLimit = 2.0;
-/// Share of the errors that speaks for even stamps, and deviations that it must be beyond. Chosen, untried.
+/// Share of the errors that speaks for even stamps, and deviations that it must be beyond. Chosen, sensitive.
 inline constexpr double kEvenShare = 0.5, kEvenSigmas = 3.0;
 
 // --- Counts ----------------------------------------------------------------------------------------------

@@ -17,9 +17,9 @@ inline constexpr double kWallPrior = 1e-6;
 // --- Dataset ---------------------------------------------------------------------------------------------
 
 /// Khepera-sized start for tuple files, which carry no nominal geometry; the closed form replaces it.
-/// Chosen, untried.
+/// Chosen, sensitive.
 inline constexpr double kUnknownRadius_m = 0.05;
-/// m, track width of a robot that states none. Chosen, untried.
+/// m, track width of a robot that states none. Chosen, sensitive.
 inline constexpr double kUnknownTrack_m = 0.3;
 /// m, rad and s, between parameters with which scans need not be matched again. Chosen, insensitive.
 inline constexpr double kSameParameters = 1e-4;
@@ -40,7 +40,7 @@ inline constexpr double kHeadingIncidence = 0.3;
 inline constexpr double kHeadingMargin_m = 0.25;
 /// rad, from a turn that is wanted between the scans of a pair. Chosen, insensitive.
 inline constexpr double kTurnTolerance_rad = 0.3;
-/// rad, wanted between the scans of a pair. Chosen, untried.
+/// rad, wanted between the scans of a pair. Chosen, insensitive.
 inline constexpr std::array kWantedTurns_rad = {2.4, 1.2, 3.0, 0.7, 1.8};
 /// Readings to either side among which the beam nearest to a place is looked for. Chosen, insensitive.
 inline constexpr std::size_t kBeamsBeside = 4;
@@ -82,12 +82,12 @@ inline constexpr double kNoisePresent = 2.71;
 /// Standard deviations at which a residual is cut in the noise's likelihood. Chosen, sensitive.
 inline constexpr double kWinsor = 2.5;
 /// Degrees of freedom of the Student t distribution that stands for noise with outliers (failed matches,
-/// bumps). Chosen, untried.
+/// bumps). Chosen, sensitive.
 inline constexpr double kStudentDof = 4.0;
 /// Factor on squared distances that makes the t likelihood read normally distributed noise at its true size.
 /// Derived: the root f of E[(dof + 3) f q / (dof + f q)] = 3 for q ~ chi-squared with 3 degrees of freedom.
 inline constexpr double kStudentConsistency = 1.3229464;
-/// Bounds of the search: rad and m a pair, s, and the factor on the matcher's deviations. Chosen, untried.
+/// Bounds of the search: rad and m a pair, s, and the factor on the matcher's deviations. Chosen, sensitive.
 inline constexpr double kLeastProcess = 1e-5, kMostProcess = 0.1;
 inline constexpr double kLeastJitter_s = 2e-4, kMostJitter_s = 0.1;
 inline constexpr double kLeastMatcherScale = 0.2, kMostMatcherScale = 1.5;
@@ -98,14 +98,14 @@ inline constexpr double kLeastCorrelation = -0.48, kMostCorrelation = 0.3;
 
 // --- Pair builder ----------------------------------------------------------------------------------------
 
-/// m, a scan match whose covariance is not recorded. Chosen, untried.
+/// m, a scan match whose covariance is not recorded. Chosen, sensitive.
 inline constexpr double kTupleNoise_m = 1e-3;
-/// rad, the same. Chosen, untried.
+/// rad, the same. Chosen, sensitive.
 inline constexpr double kTupleNoise_rad = 2e-3;
 /// rad, of a measured motion: sensor and base turn alike modulo a whole turn only, and near half a turn noise
 /// decides which way it was. Chosen: 160 degrees.
 inline constexpr double kMostTurn_rad = 2.8;
-/// m, of a mean; scan matching is no better. Chosen, untried.
+/// m, of a mean; scan matching is no better. Chosen, insensitive.
 inline constexpr double kGoodMatch_m = 5e-4;
 /// m of travel, rad of rotation, or s, if the wheels turned at all: what makes the next keyframe. Chosen,
 /// sensitive.
@@ -141,20 +141,21 @@ inline constexpr double kPairOverlap = 0.4;
 
 // --- Placed poses ----------------------------------------------------------------------------------------
 
-/// s, over which wheels err by less than a pose does. Chosen, untried.
+/// s, over which wheels err by less than a pose does. Chosen, sensitive.
 inline constexpr double kWheelSpan_s = 0.1;
-/// m and rad: nothing is measured better. Chosen, untried.
+/// m and rad: nothing is measured better. Chosen, insensitive.
 inline constexpr double kLeastPoseNoise = 1e-4;
-/// m and rad, of poses whose noise does not show. Chosen, untried.
+/// m and rad, of poses whose noise does not show. Chosen, sensitive.
 inline constexpr double kUnknownPoseNoise = 1e-3;
 
 // --- Range error terms -----------------------------------------------------------------------------------
 
-/// Standard deviations of an error of the ranges. Chosen, untried.
+/// Standard deviations of an error of the ranges. Chosen, insensitive.
 inline constexpr double kRangeErrorSigmas = 6.0;
 /// m; surfaces of the room differ by as much. Chosen, insensitive.
 inline constexpr double kLeastRangeError_m = 3e-3;
-/// Most change of the offset, as a share of it, when the incidence is allowed to explain it. Chosen, untried.
+/// Most change of the offset, as a share of it, when the incidence is allowed to explain it. Chosen,
+/// insensitive.
 inline constexpr double kMostOffsetChange = 0.5;
 /// m, where a slanted beam's error is judged, at 45 degrees. Chosen, insensitive.
 inline constexpr double kUsualDistance_m = 4.0;

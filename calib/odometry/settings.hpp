@@ -6,11 +6,11 @@
 
 namespace odomcalib::calib::odometry::settings {
 
-/// s, between the first stamps of drives that both begin at zero. Chosen, untried.
+/// s, between the first stamps of drives that both begin at zero. Chosen, insensitive.
 inline constexpr double kTogether_s = 1.0;
-/// Times the duration of the drive, after its begin, up to which a stamp belongs to it. Chosen, untried.
+/// Times the duration of the drive, after its begin, up to which a stamp belongs to it. Chosen, insensitive.
 inline constexpr double kAfterTheDrive = 2.0;
-/// Samples that are kept: effects see speeds, and speeds need a little history. Chosen, untried.
+/// Samples that are kept: effects see speeds, and speeds need a little history. Chosen, insensitive.
 inline constexpr std::size_t kHistory = 32;
 
 }  // namespace odomcalib::calib::odometry::settings

@@ -43,7 +43,7 @@ inline constexpr double kFewReadings = 0.5;
 /// Share of the pairs that contradict all others by more than five deviations, of a recording that a second
 /// look is worth. Measured: below 0.1 % in sound simulated recordings, 1 to 5 % in real ones.
 inline constexpr double kManyContradict = 0.1;
-/// The same, of a fit that describes one part of the recording and not the other. Chosen, untried.
+/// The same, of a fit that describes one part of the recording and not the other. Chosen, insensitive.
 inline constexpr double kTooManyContradict = 0.25;
 
 // --- What was left out -------------------------------------------------------------------------------------
@@ -82,7 +82,7 @@ inline constexpr double kTooFewRuns = -5.0;
 /// Residuals that the runs test needs. Chosen, insensitive.
 inline constexpr double kFewestForRuns = 10.0;
 
-/// Share of the residual's systematic part that has no name: most of it. Chosen, untried.
+/// Share of the residual's systematic part that has no name: most of it. Chosen, insensitive.
 inline constexpr double kMostUnexplained = 0.5;
 
 // --- Signs that add up -------------------------------------------------------------------------------------
@@ -95,7 +95,7 @@ inline constexpr double kMostUnexplained = 0.5;
 /// one wheel that loses a fifth of its counts now and then (5.3 to 9.9), or slips by a fifth for half of the
 /// drive (3.6 to 7.5), which may be accepted with warnings.
 inline constexpr double kMostSigns = 5.8;
-/// Largest weight of a single sign: one alone never refuses. Chosen, untried.
+/// Largest weight of a single sign: one alone never refuses. Chosen, insensitive.
 inline constexpr double kHeaviestSign = 4.0;
 
 // --- Several recordings
@@ -104,7 +104,7 @@ inline constexpr double kHeaviestSign = 4.0;
 /// Level of the test of homogeneity. Chosen: one in a thousand sets of recordings of one robot is taken for
 /// several.
 inline constexpr double kApartLevel = 1e-3;
-/// Deviations of a single difference that is no chance. Chosen, untried.
+/// Deviations of a single difference that is no chance. Chosen, insensitive.
 inline constexpr double kPlainlyApart = 4.0;
 /// Share of a length, m and rad of the lidar's place: differences beyond are refused, smaller ones widen the
 /// deviations. Chosen: the first is what the verdict warns of where a length is not known better.
@@ -123,7 +123,7 @@ inline constexpr double kHistogramEnd = 5.0;
 // --- Homogeneity -----------------------------------------------------------------------------------------
 
 /// Relative deviation of each length that one recording must determine alone to be compared with others.
-/// Chosen, untried.
+/// Chosen, insensitive.
 inline constexpr double kKnownAlone = 0.02;
 
 // --- Outlier cause ---------------------------------------------------------------------------------------
@@ -131,46 +131,46 @@ inline constexpr double kKnownAlone = 0.02;
 /// Squared ratio of distances, to the places and to the wheels' motion, from which the wheels are at fault.
 /// Derived: half as far.
 inline constexpr double kNearPlaces = 0.25;
-/// m and rad, of a pair at rest. Chosen, untried.
+/// m and rad, of a pair at rest. Chosen, insensitive.
 inline constexpr double kAtRest = 0.01;
-/// Outliers whose mean is reported as a cause, and deviations of that mean from zero. Chosen, untried.
+/// Outliers whose mean is reported as a cause, and deviations of that mean from zero. Chosen, sensitive.
 inline constexpr double kFewestOfCause = 5.0, kClearCause = 4.0;
 
 // --- Outlier trace ---------------------------------------------------------------------------------------
 
 /// Outlying events that are traced; fewer have everything in common. Chosen, insensitive.
 inline constexpr std::size_t kFewestEvents = 5;
-/// Share of all pairs that outliers must be to be traced. Chosen, untried.
+/// Share of all pairs that outliers must be to be traced. Chosen, insensitive.
 inline constexpr double kFewestOutliers = 0.015;
 /// Family-wise level of a covariate of the outliers. Derived: no draw of kOutlierDraws is above.
 inline constexpr double kOutlierLevel = 0.001;
-/// Share of the best gain from which a covariate may as well be the one. Chosen, untried.
+/// Share of the best gain from which a covariate may as well be the one. Chosen, sensitive.
 inline constexpr double kAsGood = 0.8;
 /// Slices of each coordinate of a place; their square is the number of bins of any other covariate. Chosen,
 /// untried.
 inline constexpr std::size_t kPlaceSlices = 4;
 /// Times the usual share of events, above which a bin belongs to the range that is reported. Chosen, untried.
 inline constexpr double kUnusualShare = 2.0;
-/// Covariates named of outliers. Chosen, untried.
+/// Covariates named of outliers. Chosen, insensitive.
 inline constexpr std::size_t kMostNamed = 3;
-/// Random permutations; the finest p-value is 1 / (1 + draws). Chosen, untried.
+/// Random permutations; the finest p-value is 1 / (1 + draws). Chosen, sensitive.
 inline constexpr int kOutlierDraws = 999;
 
 // --- Residual trace --------------------------------------------------------------------------------------
 
-/// Gain of the correlation ratio that a division must bring. Chosen, untried.
+/// Gain of the correlation ratio that a division must bring. Chosen, insensitive.
 inline constexpr double kWorthDividing = 0.1;
-/// Gain of the correlation ratio that a less simple covariate must bring. Chosen, untried.
+/// Gain of the correlation ratio that a less simple covariate must bring. Chosen, insensitive.
 inline constexpr double kWorthChanging = 0.02;
-/// rad; a reversal farther back is forgotten. Chosen, untried.
+/// rad; a reversal farther back is forgotten. Chosen, insensitive.
 inline constexpr double kFarBack = 20.0;
 /// Index in vehicle::kPlays of the play by which a wheel's reversal is drawn: so much of it goes by until it
-/// is taken up. Chosen, untried.
+/// is taken up. Chosen, insensitive.
 inline constexpr std::size_t kUsualPlay = 9;
-/// Bins over a covariate, and points of the picture. Chosen, untried.
+/// Bins over a covariate, and points of the picture. Chosen, sensitive.
 inline constexpr std::size_t kTraceBins = 16, kMostTracePoints = 300;
 /// m and rad, of a motion that a residual is divided by; smaller ones are left out of the picture. Chosen,
-/// untried.
+/// sensitive.
 inline constexpr double kLeastDividingWay_m = 0.03, kLeastDividingTurn_rad = 0.05;
 
 }  // namespace odomcalib::calib::report::settings

@@ -18,22 +18,22 @@ inline constexpr double kScoreBlock_s = 5.0;
 inline constexpr int kSignDraws = 1999;
 /// Bonferroni's bound below which no draws are needed. Chosen: far below any level used.
 inline constexpr double kDecisive = 1e-12;
-/// Family-wise level of named effects, and of smooth terms that must be worthwhile. Chosen: a nominal 1 %
-/// test exceeds 1 % of robots in many campaigns. With kSignDraws no draw may be above.
+/// Family-wise level of named effects, and of smooth terms where the reference is too broken to show a gain.
+/// Chosen: a nominal 1 % test exceeds 1 % of robots in many campaigns. With kSignDraws no draw may be above.
 inline constexpr double kNamedLevel = 0.0009;
-/// Family-wise level of any other smooth term. Chosen; with kSignDraws at most four draws may be above.
+/// Family-wise level of smooth terms. Chosen; with kSignDraws at most four draws may be above.
 inline constexpr double kUnnamedLevel = 0.0025;
 /// Family-wise level of clock effects. Chosen: a delay hardly shows in odometry and cannot spoil it.
 inline constexpr double kClockLevel = 0.003;
 /// Family-wise level at which the data outside a fold must point to a candidate that all data have chosen.
-/// Chosen, untried.
+/// Chosen, insensitive.
 inline constexpr double kFoldLevel = 0.05;
 
 // --- Gain on held-out data -------------------------------------------------------------------------------
 
-/// Ratio of errors above which, beyond its 95 % interval, a recording is spoilt. Chosen, untried.
+/// Ratio of errors above which, beyond its 95 % interval, a recording is spoilt. Chosen, sensitive.
 inline constexpr double kTolerated = 1.05;
-/// Evaluation windows; fewer say nothing. Chosen, untried.
+/// Evaluation windows; fewer say nothing. Chosen, sensitive.
 inline constexpr std::size_t kFewestWindows = 10;
 /// Share of the squared open-loop error beyond noise that smooth terms without a name must explain together.
 /// Derived: what explains less leaves more unexplained than it explains.
@@ -47,12 +47,12 @@ inline constexpr double kDetectableQuantiles = 4.4 + 1.28;
 
 // --- Equivalent models -----------------------------------------------------------------------------------
 
-/// Expected gap of -2 log L that separates two candidates. Chosen, untried.
+/// Expected gap of -2 log L that separates two candidates. Chosen, insensitive.
 inline constexpr double kSeparable = 10.0;
 /// Share of a smooth term's statistic that one of another covariate explains when either may be meant.
-/// Chosen, untried.
+/// Chosen, insensitive.
 inline constexpr double kMostOfStatistic = 0.6;
-/// Canonical correlation that counts as indistinguishable. Chosen, untried.
+/// Canonical correlation that counts as indistinguishable. Chosen, insensitive.
 inline constexpr double kAlias = 0.9;
 
 // --- Fitted model ----------------------------------------------------------------------------------------
@@ -64,11 +64,11 @@ inline constexpr double kToleratedExcess = 1.3;
 
 // --- Hyperparameter selection ----------------------------------------------------------------------------
 
-/// Share of all that a function spans from which a rise or fall counts as a bend. Chosen, untried.
+/// Share of all that a function spans from which a rise or fall counts as a bend. Chosen, insensitive.
 inline constexpr double kPlainBend = 0.25;
 /// Bends of a function. Chosen: a peak or a step has fewer.
 inline constexpr int kMostBends = 3;
-/// Rounds in which hyperparameters and noise settle each other. Chosen, untried.
+/// Rounds in which hyperparameters and noise settle each other. Chosen, insensitive.
 inline constexpr int kShapeRounds = 3;
 /// Decrease of -2 log L that a parameter needs when what it belongs to has passed cross-validation.
 /// Published: Akaike, IEEE Trans. Autom. Control 19, 1974.
@@ -77,13 +77,13 @@ inline constexpr double kAkaike = 2.0;
 // --- Change point -----------------------------------------------------------------------------------------
 
 /// Moments tried to either side of the best in a round, and rounds, each with steps as many times smaller.
-/// Chosen, untried.
+/// Chosen, sensitive.
 inline constexpr int kMomentsEachWay = 2, kMomentRounds = 4;
 
 // --- Hyperparameters -------------------------------------------------------------------------------------
 
 /// Share of the motion in which an effect is absent, or of the other sign, when zero is known. Chosen,
-/// untried.
+/// insensitive.
 inline constexpr double kQuietShare = 0.1;
 
 // --- Lidar score -----------------------------------------------------------------------------------------
@@ -102,34 +102,34 @@ inline constexpr double kLidarLevel = 0.001;
 
 // --- Plausibility ----------------------------------------------------------------------------------------
 
-/// Share of a bound from which a prior holds a size back. Chosen, untried.
+/// Share of a bound from which a prior holds a size back. Chosen, sensitive.
 inline constexpr double kNearBound = 0.6;
-/// Times what ticks hide that a sway has to be. Chosen, untried.
+/// Times what ticks hide that a sway has to be. Chosen, insensitive.
 inline constexpr double kAboveTicks = 2.0;
-/// Deviation of a length, relative, that spoils nothing: a millimetre in a metre. Chosen, untried.
+/// Deviation of a length, relative, that spoils nothing: a millimetre in a metre. Chosen, insensitive.
 inline constexpr double kNegligibleLengthStd = 1e-3;
-/// Share of a length by which a smooth term may not move it. Chosen, untried.
+/// Share of a length by which a smooth term may not move it. Chosen, insensitive.
 inline constexpr double kMaxLengthShift = 0.25;
 /// Level of the Wald test of a term that is still needed. Chosen: the usual 5 %.
 inline constexpr double kNeededLevel = 0.05;
 /// Times a length's deviation without the term, above which the term spoils the length: a term that
-/// nothing can correct, and any other. Chosen, untried.
+/// nothing can correct, and any other. Chosen, insensitive.
 inline constexpr double kWidenedByNowhere = 10.0, kWidenedByCorrection = 3.0;
 
 // --- Range scale -----------------------------------------------------------------------------------------
 
-/// Scans of a recording, evenly, in which the lengths of the ranges are looked at. Chosen, untried.
+/// Scans of a recording, evenly, in which the lengths of the ranges are looked at. Chosen, insensitive.
 inline constexpr std::size_t kScansOfScale = 50;
-/// Share of a range over which its error's slope is taken, to either side. Chosen, untried.
+/// Share of a range over which its error's slope is taken, to either side. Chosen, insensitive.
 inline constexpr double kHalfStep = 0.05;
 
 // --- Range trace -----------------------------------------------------------------------------------------
 
-/// Readings that no longer seem outliers show some more of the error. Chosen, untried.
+/// Readings that no longer seem outliers show some more of the error. Chosen, insensitive.
 inline constexpr int kRangePasses = 4;
-/// m, change of an error of the ranges that no longer matters. Chosen, untried.
+/// m, change of an error of the ranges that no longer matters. Chosen, insensitive.
 inline constexpr double kRangeSettled_m = 1e-4;
-/// Standard deviations of the mean gain on scans that were not used. Chosen, untried.
+/// Standard deviations of the mean gain on scans that were not used. Chosen, insensitive.
 inline constexpr double kHeldOutZ = 2.5;
 /// Standard deviations of an error of the ranges. Chosen as kSignificance.
 inline constexpr double kClearRangeError = 4.0;
@@ -158,13 +158,13 @@ inline constexpr double kDecisivePeak = 1e-4;
 inline constexpr double kNoiseShare = 0.95;
 /// Named terms. Chosen, insensitive.
 inline constexpr std::size_t kMostFindings = 3;
-/// Smooth terms without a name. Chosen, untried.
+/// Smooth terms without a name. Chosen, insensitive.
 inline constexpr std::size_t kMostSmooths = 4;
 /// Additions and candidates that failed cross-validation, together. Chosen: time.
 inline constexpr int kMostSteps = 12;
-/// Gauss-Newton steps of a fit. Chosen, untried.
+/// Gauss-Newton steps of a fit. Chosen, insensitive.
 inline constexpr int kMostSearchIterations = 24;
-/// Share of what a name explains from which a small delay explains it as well. Chosen, untried.
+/// Share of what a name explains from which a small delay explains it as well. Chosen, insensitive.
 inline constexpr double kClockShareOfName = 0.9;
 
 // --- Search round ----------------------------------------------------------------------------------------
@@ -172,11 +172,11 @@ inline constexpr double kClockShareOfName = 0.9;
 /// Units of BIC within which two candidates may both be meant. Chosen; 6 to 10 are called strong evidence
 /// by Kass and Raftery, J. Am. Stat. Assoc. 90, 1995.
 inline constexpr double kAmbiguity = 6.0;
-/// Share of a smooth term's statistic that a name with that dependence must reach. Chosen, untried.
+/// Share of a smooth term's statistic that a name with that dependence must reach. Chosen, sensitive.
 inline constexpr double kSameDependence = 0.5;
-/// Candidates refitted jointly per step. Chosen, untried.
+/// Candidates refitted jointly per step. Chosen, insensitive.
 inline constexpr std::size_t kRefits = 4;
-/// Share of what a freer term explains with which a name is certain. Chosen, untried.
+/// Share of what a freer term explains with which a name is certain. Chosen, sensitive.
 inline constexpr double kNameShareOfSmooth = 0.9;
 
 }  // namespace odomcalib::calib::selection::settings

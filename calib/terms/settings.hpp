@@ -26,7 +26,7 @@ inline constexpr double kMostCycles = 120.0;
 /// Parts of the drive before and after a change point. Chosen, insensitive.
 inline constexpr int kLeastPart = 2;
 /// Halvings of the step between change points, of the moments tried about the one that was found. Chosen,
-/// untried.
+/// sensitive.
 inline constexpr int kFirstHalving = 3, kLastHalving = 5;
 /// s, of a lidar's metre that fades. Chosen: warming up is a matter of minutes.
 inline constexpr std::array kFadingTimes_s = {30.0, 100.0};

@@ -9,13 +9,14 @@ namespace odomcalib::calib::validation::settings {
 
 // --- Parts of a recording that are left out or drawn together --------------------------------------------
 
-/// s, of pairs whose held-out gain is resampled together. Chosen, untried.
+/// s, of pairs whose held-out gain is resampled together. Chosen, insensitive.
 inline constexpr double kGainBlock_s = 10.0;
 /// s, of pairs that belong to one fold. Chosen, sensitive.
 inline constexpr double kFoldBlock_s = 20.0;
 /// s, of evaluation windows that are resampled together. Chosen, sensitive.
 inline constexpr double kWindowBlock_s = 30.0;
-/// Parts of a recording that are left out in turn. Chosen, untried.
+/// Parts of a recording that are left out in turn. Published: five or ten, T. Hastie, R. Tibshirani, J.
+/// Friedman: The Elements of Statistical Learning, 2nd edition, Springer 2009, section 7.10.
 inline constexpr std::size_t kFolds = 5;
 
 // --- Robustness ------------------------------------------------------------------------------------------
