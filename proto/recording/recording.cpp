@@ -293,6 +293,7 @@ Result<Recording> read_folder(const std::filesystem::path& folder, const Wanted&
   if (!found) return found.error();
   RecordingBuilder builder(wanted.intensities);
   for (const auto& name : found.value().missing) builder.discard("file", name + " is missing");
+  for (const auto& remark : found.value().remarks) builder.choose(remark);
   ros::Collector collector(ros::kinds_of(wanted.topics), wanted.limit);
   std::string hashes;
   for (const auto& path : found.value().files) {

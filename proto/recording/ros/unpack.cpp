@@ -98,6 +98,12 @@ Unpacked unpack_zstd(std::string_view packed, std::size_t limit) {
 
 bool is_zstd(std::string_view bytes) { return bytes.starts_with("\x28\xB5\x2F\xFD"); }
 
+std::optional<std::uint64_t> stated_by_frame(std::string_view begin) {
+  const auto size = ZSTD_getFrameContentSize(begin.data(), begin.size());
+  if (size == ZSTD_CONTENTSIZE_UNKNOWN || size == ZSTD_CONTENTSIZE_ERROR) return std::nullopt;
+  return size;
+}
+
 Unpacked unpack(Packing packing, std::string_view packed, std::size_t limit) {
   switch (packing) {
     case Packing::bz2:

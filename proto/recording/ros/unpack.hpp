@@ -24,6 +24,13 @@ Unpacked unpack(Packing packing, std::string_view packed, std::size_t limit);
 /// True when the bytes begin with the magic of a zstd frame (RFC 8878).
 bool is_zstd(std::string_view bytes);
 
+/// Bytes of the longest header of a zstd frame (RFC 8878, 3.1.1.1: magic 4, descriptor 1, window 1,
+/// dictionary 4, content size 8).
+inline constexpr std::size_t kLongestFrameHeader = 18;
+
+/// Bytes that the first zstd frame states to unpack to; nullopt: it is none, or does not state it.
+std::optional<std::uint64_t> stated_by_frame(std::string_view begin);
+
 /// Unpacks pieces of one recording until together they reach its limit.
 class Unpacker {
  public:

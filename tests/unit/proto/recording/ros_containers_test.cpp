@@ -282,6 +282,107 @@ TEST(RosContainers, a_folder_of_one_file_of_any_name_lacks_nothing) {
   }
 }
 
+/// Writes metadata.yaml of a folder with these splits.
+void list_splits(const std::filesystem::path& folder, const std::vector<std::string>& names) {
+  std::ofstream metadata(folder / "metadata.yaml");
+  metadata << "rosbag2_bagfile_information:\n"
+              "  version: 5\n"
+              "  duration:\n"
+              "    nanoseconds: 60\n"
+              "  relative_file_paths:\n";
+  for (const auto& name : names) metadata << "    - " << name << "\n";
+  metadata << "  files:\n    - path: drive_9.db3\n      message_count: 3\n";
+}
+
+std::string choices_of(const Recording& recording) {
+  std::string all;
+  for (const auto& choice : recording.choices) all += choice + "\n";
+  return all;
+}
+
+TEST(RosContainers, what_a_folder_lacks_is_told_by_its_metadata) {
+  struct Case {
+    std::vector<std::string> listed, missing;
+  };
+  const std::vector<Case> cases{
+      {{"drive_4.db3"}, {}},
+      {{"drive_4.db3.zstd"}, {}},
+      {{"old/drive_3.db3", "old/drive_4.db3", "old/drive_5.db3"}, {"drive_3.db3", "drive_5.db3"}},
+      {{"drive_2.db3"}, {"drive_2.db3", "drive_3.db3"}},  // the recorder went on behind what it had listed
+  };
+  const RobotDescription robot = test::ros_robot();
+  for (const auto& [listed, missing] : cases) {
+    const auto folder = empty_folder("listed_bag");
+    std::ofstream(folder / "drive_4.db3", std::ios::binary) << rosbag2_bytes(Wire::cdr_little);
+    list_splits(folder, listed);
+    const auto result = value_of(read_recording(folder, &robot));
+    std::filesystem::remove_all(folder);
+    expect_small_drive(result, MotionSource::wheels);
+    EXPECT_EQ(discarded_like(result, "file", ""), missing.size()) << listed.front() << list_discarded(result);
+    for (const auto& name : missing)
+      EXPECT_EQ(discarded_like(result, "file", name + " is missing"), 1U) << list_discarded(result);
+    EXPECT_EQ(choices_of(result).find("begins with"), std::string::npos) << choices_of(result);
+  }
+}
+
+TEST(RosContainers, without_metadata_nobody_knows_of_the_splits_before_the_first_one) {
+  const RobotDescription robot = test::ros_robot();
+  for (const char* metadata :
+       {"", "{[", "rosbag2_bagfile_information:\n  relative_file_paths:\n    - other_0.db3\n"}) {
+    const auto folder = empty_folder("unlisted_bag");
+    std::ofstream(folder / "drive_4.db3", std::ios::binary) << rosbag2_bytes(Wire::cdr_little);
+    if (*metadata != '\0') std::ofstream(folder / "metadata.yaml") << metadata;
+    const auto result = value_of(read_recording(folder, &robot));
+    std::filesystem::remove_all(folder);
+    EXPECT_EQ(discarded_like(result, "file", ""), 0U) << metadata << list_discarded(result);
+    EXPECT_NE(choices_of(result).find("begins with drive_4.db3; whether splits before it were kept"),
+              std::string::npos)
+        << metadata << choices_of(result);
+  }
+}
+
+// A recorder that keeps the newest splits only numbers them on.
+TEST(RosContainers, splits_of_large_numbers_are_of_one_recording_where_the_metadata_lists_them) {
+  const auto folder = empty_folder("ring_of_splits");
+  const std::string bytes = rosbag2_bytes(Wire::cdr_little);
+  for (const char* name : {"drive_5000.db3", "drive_5001.db3"})
+    std::ofstream(folder / name, std::ios::binary) << bytes;
+  const RobotDescription robot = test::ros_robot();
+  EXPECT_FALSE(read_recording(folder, &robot).ok()) << "these may be dates";
+  list_splits(folder, {"drive_5000.db3", "drive_5001.db3"});
+  const auto result = read_recording(folder, &robot);
+  std::filesystem::remove_all(folder);
+  ASSERT_TRUE(result.ok()) << result.error().text();
+  EXPECT_EQ(discarded_like(result.value(), "file", ""), 0U) << list_discarded(result.value());
+}
+
+TEST(RosContainers, a_file_that_is_there_packed_and_unpacked_is_read_once) {
+  const RobotDescription robot = test::ros_robot();
+  const std::string bytes = rosbag2_bytes(Wire::cdr_little);
+  const std::string packed = sim::packed(RosPacking::zstd, bytes);
+  struct Case {
+    std::string plain, said;
+  };
+  for (const char* name : {"drive_0.db3", "hall.db3", "run_20240501.db3"}) {
+    const std::string file = name;
+    for (const auto& [plain, said] :
+         {Case{bytes, file + " is read; " + file + ".zstd is the same packed, and is not"},
+          Case{bytes.substr(0, bytes.size() / 2),
+               file + ".zstd is read; " + file + " is the same with less in it, and is not"}}) {
+      const auto folder = empty_folder("packed_and_unpacked");
+      std::ofstream(folder / file, std::ios::binary) << plain;
+      std::ofstream(folder / (file + ".zstd"), std::ios::binary) << packed;
+      const auto result = read_recording(folder, &robot);
+      std::filesystem::remove_all(folder);
+      ASSERT_TRUE(result.ok()) << result.error().text();
+      expect_small_drive(result.value(), MotionSource::wheels);
+      EXPECT_EQ(discarded_like(result.value(), "file", ""), 0U) << list_discarded(result.value());
+      EXPECT_EQ(discarded_like(result.value(), "scan", ""), 0U) << list_discarded(result.value());
+      EXPECT_NE(choices_of(result.value()).find(said), std::string::npos) << choices_of(result.value());
+    }
+  }
+}
+
 TEST(RosContainers, of_an_older_form_or_encrypted_say_what_to_do) {
   const std::vector<std::pair<std::string, std::string>> cases{
       {"#ROSBAG V1.2\n", "rosbag fix"},
