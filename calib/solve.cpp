@@ -83,7 +83,8 @@ Solution solve_with_pairs(std::span<const Recording> recordings, const SolveOpti
                           const Progress& callback) {
   const Progress progress = callback ? callback : [](const std::string&, double) {};
 
-  const ingest::Recordings whole = ingest::put_right(recordings, options.sensor);
+  const ingest::Recordings mended = ingest::put_right(recordings, options.sensor);
+  const ingest::Recordings whole = options.same_lidar ? ingest::of_one_name(mended) : mended;
   const auto scale = options.scale ? options.scale : ingest::scale_by_data_sheet(whole.view());
   const ingest::Recordings scaled = ingest::with_scale(whole.view(), scale ? scale->value : 1.0);
   const ingest::Cleaned cleaned = ingest::without_phantom_returns(scaled.view());

@@ -21,6 +21,8 @@ struct SolveOptions {
   std::vector<std::string> effects = {"auto"};
   /// Recordings that state different robot_id are of one robot all the same.
   bool same_robot = false;
+  /// Recordings whose lidars have different names, and nothing else that differs, are of one lidar.
+  bool same_lidar = false;
   /// The lidar whose scans are used, of several that one topic carries; empty: that with most.
   std::string sensor = {};
   /// All of them but in an ablation.

@@ -5,6 +5,7 @@
 #include <span>
 #include <string>
 
+#include "calib/ingest/recordings.hpp"
 #include "proto/recording/recording.hpp"
 
 namespace odomcalib::calib::ingest {
@@ -18,7 +19,12 @@ bool is_by_scans(const Recording& recording);
 std::optional<Error> lacks_sensor(std::span<const Recording> recordings, const std::string& sensor);
 
 /// Recordings of one lidar each (see put_right()) that are of two; nullopt where those that name it name the
-/// same. Error: refused.
+/// same. Error: refused; says what besides the name differs.
 std::optional<Error> two_sensors(std::span<const Recording> recordings);
+
+/// Recordings of one lidar each whose scans are of one lidar by another name: they get the name of the first
+/// that has one, and say so in `repairs`. Those that differ in more than the name (number and directions of
+/// the beams, limits of the range, stated mounting) keep theirs. Without any such name the recordings given.
+Recordings of_one_name(const Recordings& given);
 
 }  // namespace odomcalib::calib::ingest

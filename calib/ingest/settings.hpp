@@ -80,6 +80,9 @@ inline constexpr double kUsualNumber = 0.5;
 /// Relative difference of the mean number of beams times their step from one turn. Chosen: steps are stated
 /// to that.
 inline constexpr double kNearlyOneTurn = 0.02;
+/// Relative difference of the medians of the number of beams and of their step, between recordings of one
+/// lidar. Derived: a head whose speed wanders by that still makes one turn.
+inline constexpr double kSameTurn = kNearlyOneTurn;
 
 // --- Ranges ----------------------------------------------------------------------------------------------
 

@@ -30,7 +30,7 @@ struct SolveArguments {
   std::string scale, sensor, out, report, pairs, note, place;
   calib::classical::ClosedFormOptions cuts;
   RecordingOptions reading;
-  bool same_robot = false;
+  bool same_robot = false, same_lidar = false;
   std::optional<double> odometer_km;
 };
 
@@ -93,7 +93,10 @@ int solve_recordings(const SolveArguments& options, const Session& session) {
   if (const auto wrong = calib::terms::wrong_effects(options.effects))
     return report_error(*wrong, session.json);
   if (const auto files = check_files(options); !files) return report_error(files.error(), session.json);
-  calib::SolveOptions how{.effects = options.effects, .same_robot = options.same_robot, .cuts = options.cuts};
+  calib::SolveOptions how{.effects = options.effects,
+                          .same_robot = options.same_robot,
+                          .same_lidar = options.same_lidar,
+                          .cuts = options.cuts};
   if (!options.scale.empty()) {
     const auto scale = scale_from_text(options.scale);
     if (!scale) return report_error(scale.error(), session.json);
@@ -134,6 +137,8 @@ void add_solve(CLI::App& app, Session& session) {
   verb->add_option("--sensor", options->sensor,
                    "of several lidars on one topic, the one whose scans are used; without: that with most");
   verb->add_flag("--same-robot", options->same_robot, "recordings with different robot_id are of one robot");
+  verb->add_flag("--same-lidar", options->same_lidar,
+                 "lidars whose names alone differ from recording to recording are one");
   verb->add_option("--out", options->out, "calibration file to write, also when refused");
   verb->add_option("--report", options->report, "HTML report to write");
   verb->add_option("--pairs", options->pairs,

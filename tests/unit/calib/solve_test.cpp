@@ -127,6 +127,12 @@ TEST(Solve, recordings_of_two_lidars_are_refused) {
   EXPECT_NE(result.reasons[0].find("its scans are of the sensor \"rear\", but those of drive1 of \"front\""),
             std::string::npos)
       << result.reasons[0];
+  // A second one of the model would look the same: somebody has to say that it is the same one.
+  const Calibration same = solve(recordings, {.same_lidar = true});
+  ASSERT_FALSE(same.reasons.empty());
+  EXPECT_EQ(same.reasons[0].find("its scans are of the sensor"), std::string::npos) << same.reasons[0];
+  ASSERT_FALSE(same.repairs.empty());
+  EXPECT_EQ(same.repairs[0].chosen, "of the sensor \"rear\", taken for \"front\"");
 }
 
 TEST(Solve, an_unknown_effect_is_refused_by_name) {
