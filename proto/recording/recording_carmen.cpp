@@ -17,7 +17,7 @@ constexpr double kNoNumber = std::numeric_limits<double>::quiet_NaN();
 constexpr double kAssumedInterval = 0.2;  // s between scans of a log without time stamps
 constexpr std::size_t kMostCarmenBeams = 100'000;
 constexpr double kFarthest = 1e4;  // m
-constexpr std::string_view kOdomLine = "ODOM";
+constexpr std::string_view kOdomLine = "ODOM", kPlainLaser = "FLASER", kRobotLaser = "ROBOTLASER1";
 
 /// The words of one line; a word that is missing or no number reads as NaN.
 class Words {
@@ -63,6 +63,7 @@ struct Log {
   std::vector<Odometry> odometry;       // of ODOM lines
   std::vector<Odometry> scan_odometry;  // of laser lines: used when there are no ODOM lines
   std::vector<Scan> scans;
+  std::vector<bool> is_plain;  // of each scan: a FLASER line
   std::optional<std::array<double, 3>> lidar_pose;
   std::string_view open_end;  // message of a last line without its end and without a stamp
 };
@@ -111,6 +112,12 @@ void note_lidar_pose(Log& log, const std::array<double, 3>& laser, const std::ar
                     std::remainder(laser[2] - robot[2], 2.0 * std::numbers::pi)};
 }
 
+void add_scan(Log& log, Scan scan, const std::array<double, 3>& robot, bool plain) {
+  log.scan_odometry.push_back({scan.t, robot});
+  log.scans.push_back(std::move(scan));
+  log.is_plain.push_back(plain);
+}
+
 /// FLASER n ranges x y theta odom_x odom_y odom_theta time host logger_time
 bool read_flaser(Words& words, Log& log) {
   Scan scan;
@@ -121,8 +128,7 @@ bool read_flaser(Words& words, Log& log) {
   if (!finite(laser) || !finite(robot)) return false;
   scan.t = read_time(words);
   note_lidar_pose(log, laser, robot);
-  log.scan_odometry.push_back({scan.t, robot});
-  log.scans.push_back(std::move(scan));
+  add_scan(log, std::move(scan), robot, true);
   return true;
 }
 
@@ -147,8 +153,7 @@ bool read_robotlaser(Words& words, Log& log) {
   scan.t = read_time(words);
   if (!finite(laser) || !finite(robot)) return false;
   note_lidar_pose(log, laser, robot);
-  log.scan_odometry.push_back({scan.t, robot});
-  log.scans.push_back(std::move(scan));
+  add_scan(log, std::move(scan), robot, false);
   return true;
 }
 
@@ -178,16 +183,16 @@ std::string not_taken(std::string_view name) { return std::string(name) + " was 
 /// Whether the message that was just read lacks its stamp.
 bool is_without_stamp(std::string_view name, const Log& log) {
   if (name == kOdomLine) return !is_stamped(log.odometry.back().t);
-  return (name == "FLASER" || name == "ROBOTLASER1") && !is_stamped(log.scans.back().t);
+  return (name == kPlainLaser || name == kRobotLaser) && !is_stamped(log.scans.back().t);
 }
 
 void read_carmen_line(std::string_view line, bool last, Log& log, RecordingBuilder& builder) {
   Words words(line);
   const auto name = words.word();
   bool good = true;
-  if (name == "FLASER")
+  if (name == kPlainLaser)
     good = read_flaser(words, log);
-  else if (name == "ROBOTLASER1")
+  else if (name == kRobotLaser)
     good = read_robotlaser(words, log);
   else if (name == kOdomLine)
     good = read_odometry(words, log);
@@ -219,6 +224,25 @@ void drop_open_end(Log& log, RecordingBuilder& builder) {
   if (log.open_end == kOdomLine) return log.odometry.pop_back();
   log.scans.pop_back();
   log.scan_odometry.pop_back();
+  log.is_plain.pop_back();
+}
+
+/// Loggers may write a scan as both messages, one after the other: the one that states its angles is kept.
+void drop_doubled_scans(Log& log, RecordingBuilder& builder) {
+  const auto is_doubled_by = [&](std::size_t i, std::size_t other) {
+    return other < log.scans.size() && !log.is_plain[other] && log.scans[other].ranges == log.scans[i].ranges;
+  };
+  std::vector<bool> doubled(log.scans.size());
+  for (std::size_t i = 0; i < log.scans.size(); ++i)
+    doubled[i] = log.is_plain[i] && (is_doubled_by(i, i + 1) || (i > 0 && is_doubled_by(i, i - 1)));
+  Log kept;
+  for (std::size_t i = 0; i < log.scans.size(); ++i)
+    if (!doubled[i]) add_scan(kept, std::move(log.scans[i]), log.scan_odometry[i].pose, log.is_plain[i]);
+  builder.discard("message", not_taken(kPlainLaser) + ": the same scan as a " + std::string(kRobotLaser),
+                  log.scans.size() - kept.scans.size());
+  log.scans = std::move(kept.scans);
+  log.scan_odometry = std::move(kept.scan_odometry);
+  log.is_plain = std::move(kept.is_plain);
 }
 
 /// Some logs were converted without their stamps: a made-up clock keeps them usable, and is reported.
@@ -290,7 +314,7 @@ bool looks_like_carmen(std::string_view text) {
     const std::size_t end = text.find('\n');
     Words words(text.substr(0, end));
     const auto name = words.word();
-    if (name == "FLASER" || name == "ROBOTLASER1" || name == kOdomLine || name == "PARAM") return true;
+    if (name == kPlainLaser || name == kRobotLaser || name == kOdomLine || name == "PARAM") return true;
     if (!is_remark(name) && !is_other_line(name)) return false;
     text.remove_prefix(end == std::string_view::npos ? text.size() : end + 1);
   }
@@ -306,10 +330,9 @@ void read_carmen(std::string_view text, const RobotDescription* robot, Recording
     text.remove_prefix(last ? text.size() : end + 1);
   }
   if (log.scans.empty()) return;
-  if (has_times(log))
-    drop_open_end(log, builder);
-  else
-    assume_times(log, builder);
+  if (has_times(log)) drop_open_end(log, builder);
+  drop_doubled_scans(log, builder);
+  if (!has_times(log)) assume_times(log, builder);
   shift_times(log, builder);
   RobotDescription description = robot != nullptr ? *robot : RobotDescription{};
   if (!description.lidar_pose) description.lidar_pose = log.lidar_pose;

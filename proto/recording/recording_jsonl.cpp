@@ -73,10 +73,31 @@ double grid_step(const JsonFields& fields, std::size_t beams) {
   return (fields[Scalar::angle_max] - fields[Scalar::angle_min]) / static_cast<double>(beams - 1);
 }
 
+/// Censi's raw logs say how many beams there are, and which of them measured something.
+const char* beam_problem(const JsonFields& fields) {
+  const std::size_t beams = fields[Array::ranges].size(), marks = fields[Array::valid].size();
+  if (fields.has(Scalar::beams) && fields[Scalar::beams] != static_cast<double>(beams))
+    return "nrays does not match ranges";
+  return marks != 0 && marks != beams ? "valid does not match ranges" : nullptr;
+}
+
+/// Takes the readings away that are marked as none.
+void blank_invalid(const std::vector<double>& valid, std::vector<float>& ranges, RecordingBuilder& builder) {
+  std::size_t blanked = 0;
+  for (std::size_t k = 0; k < valid.size(); ++k) {
+    if (valid[k] > 0.0 || ranges[k] == 0.0F || !std::isfinite(ranges[k])) continue;
+    ranges[k] = 0.0F;
+    ++blanked;
+  }
+  builder.discard("beam", "marked as not valid", blanked);
+}
+
 void add_scan(const JsonFields& fields, RecordingBuilder& builder) {
+  if (const char* problem = beam_problem(fields)) return builder.discard("scan", problem);
   Scan scan;
   scan.t = time_of(fields);
   scan.ranges = to_floats(fields[Array::ranges]);
+  blank_invalid(fields[Array::valid], scan.ranges, builder);
   scan.angles = to_floats(fields[Array::angles]);
   scan.times = to_floats(fields[Array::times]);
   scan.intensities = to_floats(fields[Array::intensities]);
@@ -123,7 +144,7 @@ void add_wheel_speeds(const JsonFields& fields, RecordingBuilder& builder) {
 
 /// Members without which a line is of use all the same, and what each is where it is of another type. The
 /// others are counted with their samples, or refused.
-constexpr std::array<std::pair<std::string_view, const char*>, 13> kOptional{{
+constexpr std::array<std::pair<std::string_view, const char*>, 14> kOptional{{
     {"sensor", " is no text"},
     {"robot_id", " is no text"},
     {"controller", " is no text"},
@@ -131,6 +152,7 @@ constexpr std::array<std::pair<std::string_view, const char*>, 13> kOptional{{
     {"angles", " is no list of numbers"},
     {"theta", " is no list of numbers"},
     {"times", " is no list of numbers"},
+    {"valid", " is no list of numbers"},
     {"ray_dt", " is no list of numbers"},
     {"intensities", " is no list of numbers"},
     {"time_increment", " is no number"},

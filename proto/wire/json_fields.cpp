@@ -18,7 +18,7 @@ using Slot = std::variant<std::monostate, Scalar, Array, Text>;
 
 // Names of DESIGN 4.2, of Censi's raw logs (readings, theta, ray_dt, stamps as [s, us]) and of his tuple
 // files.
-constexpr std::array<std::pair<std::string_view, Slot>, 41> kLineMembers{{
+constexpr std::array<std::pair<std::string_view, Slot>, 43> kLineMembers{{
     {"type", Text::type},
     {"t", Scalar::t},
     {"left", Scalar::left},
@@ -33,6 +33,8 @@ constexpr std::array<std::pair<std::string_view, Slot>, 41> kLineMembers{{
     {"time_increment", Scalar::time_increment},
     {"range_min", Scalar::range_min},
     {"range_max", Scalar::range_max},
+    {"valid", Array::valid},
+    {"nrays", Scalar::beams},
     {"angles", Array::angles},
     {"theta", Array::angles},
     {"times", Array::times},
@@ -85,9 +87,10 @@ class Handler {
         (std::get<Array>(slot_) == Array::ranges || std::get<Array>(slot_) == Array::intensities);
     return number(no_reading ? 0.0 : kAbsent);
   }
-  bool boolean(bool) {
+  bool boolean(bool value) {
     note_wrong_type();
-    return number(kAbsent);
+    const bool flag = std::holds_alternative<Array>(slot_) && std::get<Array>(slot_) == Array::valid;
+    return number(flag ? static_cast<double>(value) : kAbsent);
   }
   bool number_integer(number_integer_t value) {
     note_lone_number();

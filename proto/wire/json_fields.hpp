@@ -35,6 +35,7 @@ enum class Scalar : std::uint8_t {
   track_width,
   ticks_per_rev,
   time_zero,
+  beams,
   tuple_duration,
   tuple_left,
   tuple_right,
@@ -51,6 +52,7 @@ enum class Array : std::uint8_t {
   left_timestamp,
   right_timestamp,
   tuple_motion,
+  valid,
   count
 };
 
@@ -61,7 +63,8 @@ struct JsonFields {
   std::array<double, static_cast<std::size_t>(Scalar::count)> scalars{};
   /// `left` and `right` where they are exact integers.
   std::array<std::optional<std::int64_t>, 2> counts;
-  /// Elements that are not numbers are NaN; null in ranges and intensities is 0.
+  /// Elements that are not numbers are NaN; null in ranges and intensities is 0, a truth value in `valid` 0
+  /// or 1.
   std::array<std::vector<double>, static_cast<std::size_t>(Array::count)> arrays;
   /// A number is its text.
   std::array<std::string, static_cast<std::size_t>(Text::count)> texts;

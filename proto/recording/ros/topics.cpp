@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdio>
+#include <optional>
 
 #include "proto/recording/ros/choice.hpp"
 #include "proto/recording/ros/clock.hpp"
@@ -19,10 +21,29 @@ bool has_values(const Topic& topic, const std::vector<Places>& at, bool speeds) 
   });
 }
 
-/// Some drivers publish speeds only.
+/// Whether the angles of the wheels are one and the same in all messages, while there are speeds.
+bool angles_stand_still(const Topic& topic, const std::vector<Places>& at) {
+  std::array<std::optional<double>, 2> first;
+  bool moves = false;
+  for (const auto& one : topic.joints) {
+    for (std::size_t side = 0; side < first.size(); ++side) {
+      const auto& place = at[one.value.names].at(side);
+      if (!place || one.value.positions.empty()) continue;
+      const double angle = one.value.positions[*place];
+      if (!first.at(side)) first.at(side) = angle;
+      if (angle != *first.at(side)) return false;
+      moves = moves || (!one.value.velocities.empty() && std::abs(one.value.velocities[*place]) > 0.0);
+    }
+  }
+  return moves;
+}
+
+/// Some drivers publish speeds only, or fill in the angles with a number.
 bool speeds_only(const Chosen& chosen) {
   const auto has_positions = [](const Topic* topic, const Joints& joints) {
-    return topic == nullptr || has_values(*topic, places(*topic, joints), false);
+    if (topic == nullptr) return true;
+    const auto at = places(*topic, joints);
+    return has_values(*topic, at, false) && !angles_stand_still(*topic, at);
   };
   const Joints& joints = chosen.joints;
   if (chosen.right_wheel == nullptr) return !has_positions(chosen[Part::wheels], joints);
@@ -63,7 +84,7 @@ void add_wheels(RecordingBuilder& builder, const Chosen& chosen, const Clock& cl
   const Topic* topic = speeds != nullptr ? speeds : chosen[Part::wheels];
   if (topic == nullptr) return;
   const std::string part = speeds != nullptr ? "wheel_speeds"
-                           : no_angles       ? "wheel_speeds, there are no angles"
+                           : no_angles       ? "wheel_speeds, there are no angles or they never change"
                                              : "wheels";
   const Joints& joints = chosen.joints;
   if (const Topic* right = chosen.right_wheel) {

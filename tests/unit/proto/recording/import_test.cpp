@@ -165,6 +165,27 @@ TEST(CensiRawLog, SX_03_gives_scans_and_the_counts_they_carry) {
   }
 }
 
+TEST(CensiRawLog, beams_that_it_marks_as_not_valid_are_no_readings) {
+  const auto scan = [](double t, const std::string& more) {
+    return "{\"type\":\"scan\",\"timestamp\":[" + std::to_string(t) +
+           ",0],\"min_theta\":-1,\"max_theta\":1,\"readings\":[1.5,2.5,null,3.5]" + more + "}\n";
+  };
+  const auto robot = test::example_robot();
+  const auto r =
+      value_of(read_text(scan(0, "") + scan(1, ",\"nrays\":4,\"valid\":[1,0,0,1]") +
+                             scan(2, ",\"valid\":[false,true,false,null]") + scan(3, ",\"valid\":[1,0]") +
+                             scan(4, ",\"nrays\":3") + scan(5, ",\"valid\":\"all\""),
+                         &robot));
+  ASSERT_EQ(r.scans.size(), 4U) << list_discarded(r);
+  EXPECT_EQ(r.scans[0].ranges, (std::vector<float>{1.5F, 2.5F, 0, 3.5F}));
+  EXPECT_EQ(r.scans[1].ranges, (std::vector<float>{1.5F, 0, 0, 3.5F}));
+  EXPECT_EQ(r.scans[2].ranges, (std::vector<float>{0, 2.5F, 0, 0}));
+  EXPECT_EQ(discarded(r, "beam", "marked as not valid"), 3U) << list_discarded(r);
+  EXPECT_EQ(discarded(r, "scan", "valid does not match ranges"), 1U);
+  EXPECT_EQ(discarded(r, "scan", "nrays does not match ranges"), 1U);
+  EXPECT_EQ(discarded(r, "value", "valid is no list of numbers"), 1U);
+}
+
 // The counts behind this odometry were recovered independently: every one must agree.
 TEST(CarmenLog, gives_back_the_counts_behind_its_odometry) {
   ODOMCALIB_SHARED_FILE(path, "azos-wheelchair/laserazosSM3.log");
@@ -220,6 +241,29 @@ std::string carmen_scan(int k, const std::string& stamp) {
 }
 
 std::string carmen_stamp(int k) { return " " + std::to_string(1000000000 + k) + ".25 host 0.5"; }
+
+// Its messages of both kinds have stamps of their own, milliseconds apart.
+TEST(CarmenLog, a_scan_that_is_written_as_both_messages_is_read_once) {
+  const auto robot = test::example_robot();
+  for (const bool plain_first : {true, false}) {
+    std::string log;
+    for (int k = 0; k < 10; ++k) {
+      const std::string x = std::to_string(0.1 * k), range = std::to_string(3.0 - 0.1 * k);
+      const std::string poses = " " + x + " 0 0 " + x + " 0 0", zeros = " 0 0 0 0 0";
+      const std::string plain =
+          "FLASER 3 1 2 " + range + poses + " " + std::to_string(1000000000 + k) + ".254 host 0.5\n";
+      const std::string other = "ROBOTLASER1 0 -1.5 3.0 1.5 20 0.01 0 3 1 2 " + range + " 0" + poses + zeros +
+                                " " + std::to_string(1000000000 + k) + ".250 host 0.5\n";
+      log += plain_first ? plain + other : other + plain;
+    }
+    const auto r = value_of(read_text(log, &robot));
+    ASSERT_EQ(r.scans.size(), 10U) << list_discarded(r);
+    EXPECT_EQ(r.scans[0].angle_increment, 1.5);
+    EXPECT_EQ(r.ticks.size(), 10U);
+    EXPECT_EQ(discarded(r, "message", "FLASER was not taken: the same scan as a ROBOTLASER1"), 10U)
+        << list_discarded(r);
+  }
+}
 
 TEST(CarmenLog, one_scan_without_a_stamp_leaves_the_stamps_of_the_others) {
   const auto robot = test::example_robot();

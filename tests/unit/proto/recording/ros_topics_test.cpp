@@ -143,6 +143,24 @@ TEST(RosTopics, wheels_are_recognised_by_the_names_of_their_joints) {
   }
 }
 
+/// Joints whose angles are always the same, as some drivers fill them in.
+sim::RosLog filled_in(double speed) {
+  sim::RosLog log =
+      sim::ros_log(small_drive(), {.wire = Wire::cdr_little, .joints = false, .odometry = false});
+  for (int k = 0; k < 50; ++k)
+    test::add_joints(log, "/joint_states", test::kRosStart + 20 * test::kMillisecond_ns * k,
+                     {"left", "right"}, {0.0, 0.0}, {speed * (1.0 + 0.01 * k), speed});
+  return log;
+}
+
+TEST(RosTopics, angles_that_never_change_beside_speeds_give_speeds) {
+  const auto result = value_of(read_ros(mcap(filled_in(3.0))));
+  EXPECT_EQ(result.motion, MotionSource::wheel_speeds);
+  EXPECT_EQ(result.wheel_speeds.size(), 50U);
+  EXPECT_TRUE(told(result, "or they never change"));
+  EXPECT_EQ(value_of(read_ros(mcap(filled_in(0.0)))).motion, MotionSource::wheels) << "the robot stood";
+}
+
 TEST(RosTopics, joints_without_angles_give_speeds) {
   const auto result = value_of(read_ros(mcap(joints_log({"left", "right"}, false, true))));
   EXPECT_EQ(result.motion, MotionSource::wheel_speeds);
