@@ -89,6 +89,11 @@ std::size_t visit_lines(const std::string& bytes, Visit visit, JournalDamage& da
 
 std::filesystem::path older_file(const std::filesystem::path& path) { return path.string() + ".1"; }
 
+bool is_absent(const std::filesystem::path& path) {
+  std::error_code unknown;
+  return std::filesystem::symlink_status(path, unknown).type() == std::filesystem::file_type::not_found;
+}
+
 }  // namespace
 
 std::string name_of(JournalState state) { return kNames.at(static_cast<std::size_t>(state)); }
@@ -182,8 +187,6 @@ Result<Journal> Journal::open(const std::filesystem::path& path) {
 
 Result<Journal> Journal::open_read_only(const std::filesystem::path& path) {
   Journal journal(path, -1);
-  std::error_code ignored;
-  if (!std::filesystem::exists(path, ignored)) return journal;
   if (const auto bytes = journal.read_lines(); !bytes) return bytes.error();
   return journal;
 }
@@ -201,11 +204,12 @@ Result<std::size_t> Journal::read_lines() {
     return size;
   };
   const auto older = older_file(path_);
-  std::error_code unknown;
   if (const auto bytes = read_file_bytes(older))
     visit(older, bytes.value());
-  else if (std::filesystem::symlink_status(older, unknown).type() != std::filesystem::file_type::not_found)
+  else if (!is_absent(older))
     damage_.push_back({.file = older, .unreadable = bytes.error()});
+  // A crash within a rotation leaves the file before it alone.
+  if (is_absent(path_)) return std::size_t{0};
   const auto bytes = read_file_bytes(path_);
   if (!bytes) return bytes.error();
   size_ = visit(path_, bytes.value());

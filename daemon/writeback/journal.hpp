@@ -74,7 +74,8 @@ class Journal {
 
   /// Reads what is there; a torn last line is dropped, space that is reserved is kept. Errors: io.
   static Result<Journal> open(const std::filesystem::path& path);
-  /// Reads what is there; append() is an error. Errors: io, it is there and cannot be read.
+  /// Reads what is there, in this file or the one before it; append() is an error. Errors: io, it is there
+  /// and cannot be read.
   static Result<Journal> open_read_only(const std::filesystem::path& path);
   ~Journal();
   Journal(Journal&& other) noexcept;

@@ -218,6 +218,24 @@ TEST(Journal, a_torn_record_in_the_reserved_space_is_written_over) {
       (std::pair{std::vector{JournalState::begin, JournalState::rollback, JournalState::rolled_back}, true}));
 }
 
+TEST(Journal, that_a_crash_within_its_rotation_has_left_alone_is_read) {
+  const TemporaryFolder folder;
+  const auto path = folder / "journal";
+  {
+    auto journal = value_of(Journal::open(path));
+    ASSERT_TRUE(journal.append(record_of(JournalState::commit)).ok());
+  }
+  std::filesystem::rename(path, path.string() + ".1");
+  for (const bool reading_only : {true, false}) {
+    const auto journal = value_of(reading_only ? Journal::open_read_only(path) : Journal::open(path));
+    ASSERT_TRUE(journal.last()) << reading_only;
+    EXPECT_EQ(journal.last()->state, JournalState::commit);
+    EXPECT_EQ(journal.ends().size(), 1U);
+    EXPECT_TRUE(journal.damage().empty());
+    EXPECT_EQ(std::filesystem::exists(path), !reading_only);
+  }
+}
+
 void write_text(const std::filesystem::path& path, const std::string& text) {
   std::ofstream(path, std::ios::binary) << text;
 }
