@@ -157,6 +157,7 @@ void Loop::serve_write_back() {
   if (const auto report = parts_.write_back.serve(drive.controller(), drive.values_known, may_begin,
                                                   parts_.now, parts_.clock.wall_us()))
     settle_write(parts_, *report);
+  look_again_at_history(parts_);
 }
 
 void Loop::serve_task() {

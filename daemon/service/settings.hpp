@@ -172,6 +172,8 @@ inline constexpr double kSmallTurn_rad = 1.0;
 inline constexpr double kComesToRest_s = 2.0;
 /// s after a reading that may have failed. Chosen.
 inline constexpr double kReadAgain_s = 2.0;
+/// s between looks at a history that cannot be listed. Chosen: who has mended the folder waits no longer.
+inline constexpr double kLookAgain_s = 2.0;
 /// s since somebody else was last seen to change the controller, until it is read again. Chosen: longer than
 /// any program pauses that sets up a drive; a person who asks for a motion then waits no longer.
 inline constexpr double kOthersQuiet_s = 1.0;

@@ -1,6 +1,13 @@
 #include "daemon/service/write_outcome.hpp"
 
+#include <fmt/format.h>
+
+#include <limits>
 #include <memory>
+#include <set>
+#include <utility>
+
+#include "daemon/service/settings.hpp"
 
 namespace odomcalib {
 namespace {
@@ -79,6 +86,33 @@ std::optional<Error> take_over(RobotParts& parts, const Settlement& end) {
       why.where, why.remedy + "; then apply again"};
 }
 
+void tell_unreadable(RobotParts& parts) {
+  for (const std::filesystem::path& path : parts.write_back.history.unreadable())
+    parts.outbox.event(messages::Severity::warning, "history",
+                       path.string() + ": holds no write-back that can be read; rollback passes over it");
+}
+
+/// The result of a look at the history, filled in beside the loop.
+struct Look {
+  std::optional<History> found;
+  std::vector<HistoryEntry> unwritten;  ///< that the disk has not taken before
+  std::set<std::string> written;        ///< ids of those that are there now
+};
+
+void take_over(RobotParts& parts, Look look) {
+  WriteBack& values = parts.write_back;
+  values.next_look = parts.now + service::settings::kLookAgain_s;
+  // An end that is on its way to the disk has begun to ask the history whether it can be listed.
+  if (look.found->unlisted() || values.settling) return;
+  const std::string folder = look.found->folder().string();
+  std::erase_if(values.unwritten, [&](const HistoryEntry& one) { return look.written.contains(one.id); });
+  values.history.take_over(std::move(*look.found));
+  parts.outbox.event(
+      messages::Severity::info, "history",
+      fmt::format("{}: can be read again; write-backs in it: {}", folder, values.history.entries().size()));
+  tell_unreadable(parts);
+}
+
 }  // namespace
 
 void settle_reading(Drive& drive, Outbox& outbox, const std::vector<drivers::StoredParameter>& found,
@@ -127,14 +161,28 @@ void settle_from_journal(RobotParts& parts) {
     parts.outbox.event(messages::Severity::warning, "journal", to_text(damage));
   if (const auto& why = values.history.unlisted())
     parts.outbox.event(messages::Severity::warning, "history", why->text());
-  for (const std::filesystem::path& path : values.history.unreadable())
-    parts.outbox.event(messages::Severity::warning, "history",
-                       path.string() + ": holds no write-back that can be read; rollback passes over it");
+  tell_unreadable(parts);
   const auto& last = values.transaction.journal().last();
   Settlement end;
   end.calibration = last && last->state == JournalState::commit ? last->calibration : "";
   settle_on_disk(values.history, parts.applied, end);
   (void)take_over(parts, end);
+}
+
+void look_again_at_history(RobotParts& parts) {
+  WriteBack& values = parts.write_back;
+  const bool waits = values.busy() || values.proving() || values.ending();
+  if (!values.history.unlisted() || waits || parts.now < values.next_look) return;
+  values.next_look = std::numeric_limits<double>::infinity();  // until it is done
+  const auto look = std::make_shared<Look>(Look{std::nullopt, values.unwritten, {}});
+  parts.disk->post(
+      [look, folder = values.history.folder()] {
+        const History& found = look->found.emplace(folder);
+        if (found.unlisted()) return;
+        for (const HistoryEntry& entry : look->unwritten)
+          if (found.knows(entry) || found.write(entry)) look->written.insert(entry.id);
+      },
+      [&parts, look] { take_over(parts, std::move(*look)); });
 }
 
 }  // namespace odomcalib

@@ -19,4 +19,8 @@ void settle_reading(Drive& drive, Outbox& outbox, const std::vector<drivers::Sto
 /// calibration that came with the last commit comes into force.
 void settle_from_journal(RobotParts& parts);
 
+/// Looks again, beside the loop and now and then, at a history that could not be listed; nothing is written
+/// to the controller before it is. What the journal alone knew goes to the disk then.
+void look_again_at_history(RobotParts& parts);
+
 }  // namespace odomcalib

@@ -88,7 +88,7 @@ History::Listing History::listing() const {
             [](const auto& a, const auto& b) { return number_of(a) > number_of(b); });
   if (error && error != std::errc::no_such_file_or_directory)
     all.error = Error{ErrorCode::io, "cannot read the history: " + error.message(), folder_.string(),
-                      "check this folder and its file system, then restart the daemon"};
+                      "check this folder and its file system; a running daemon looks at it again by itself"};
   return all;
 }
 
@@ -131,16 +131,28 @@ void History::keep(HistoryEntry entry) {
   if (entries_.size() > kKept) entries_.resize(kKept);
 }
 
+bool History::knows(const HistoryEntry& entry) const {
+  const auto known = find(entry.id);
+  return known && known->outcome == entry.outcome;
+}
+
+void History::take_over(History found) {
+  for (HistoryEntry& entry : entries_)
+    if (!found.knows(entry)) found.keep(std::move(entry));
+  entries_ = std::move(found.entries_);
+  unreadable_ = std::move(found.unreadable_);
+  unlisted_ = std::move(found.unlisted_);
+  newest_ = std::max(newest_, found.newest_);
+}
+
 // The id was given when the write-back began: a record of an earlier version has none, and had its entry
 // written.
 std::vector<JournalRecord> History::missing(const std::vector<JournalRecord>& ends) const {
   std::vector<JournalRecord> out;
   for (const JournalRecord& end : ends) {
-    const auto known = find(end.origin.entry);
     const bool kept = number_of(end.origin.entry) + kKept > newest_;
     std::erase_if(out, [&](const JournalRecord& one) { return one.origin.entry == end.origin.entry; });
-    if (!end.origin.entry.empty() && kept && (!known || known->outcome != entry_of(end).outcome))
-      out.push_back(end);
+    if (!end.origin.entry.empty() && kept && !knows(entry_of(end))) out.push_back(end);
   }
   return out;
 }

@@ -51,9 +51,15 @@ class History {
   [[nodiscard]] Result<void> write(const HistoryEntry& entry) const;
   /// Takes over a numbered entry, in the place of one with the same id.
   void keep(HistoryEntry entry);
+  /// Whether there is an entry of this id that tells of the same end.
+  [[nodiscard]] bool knows(const HistoryEntry& entry) const;
+  /// Takes over what a later look at the same folder has found. Entries of its own that are not among it
+  /// stay.
+  void take_over(History found);
   /// Those ends of the journal without an entry, or with another one, as far back as entries are kept.
   [[nodiscard]] std::vector<JournalRecord> missing(const std::vector<JournalRecord>& ends) const;
 
+  [[nodiscard]] const std::filesystem::path& folder() const { return folder_; }
   /// Newest first.
   [[nodiscard]] const std::vector<HistoryEntry>& entries() const { return entries_; }
   /// Files that are there and hold no entry that can be read, newest first.

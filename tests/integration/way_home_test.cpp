@@ -145,6 +145,69 @@ TEST_F(WayHome, a_history_that_cannot_be_listed_is_told_and_not_taken_for_an_emp
     EXPECT_NE(reply.parameters.find("cannot read the history: "), std::string::npos) << reply.parameters;
 }
 
+TEST_F(WayHome, a_history_that_can_be_listed_again_is_read_and_written_to_without_a_restart) {
+  ASSERT_EQ(set_track(0.41).error, "");
+  ASSERT_EQ(set_track(0.42).error, "");
+  const auto history_folder = folder_ / "state" / "history", aside = folder_ / "aside";
+  end_service();
+  std::filesystem::rename(history_folder, aside);
+  std::filesystem::remove(aside / "0002.json");  // the journal alone knows it
+  std::ofstream(history_folder) << "no folder";
+  start_service();
+  ASSERT_TRUE(run_until([this] { return ready(); }, 20.0));
+  for (const auto& reply : {set_track(0.43), call("History"), call("Rollback"), set_track(0.43)})
+    EXPECT_NE(reply.parameters.find("cannot read the history: "), std::string::npos) << reply.parameters;
+  EXPECT_NEAR(track(), 0.42, 1e-6) << "nothing is written whose entry would have the number of another one";
+
+  std::filesystem::remove(history_folder);
+  std::filesystem::rename(aside, history_folder);
+  std::ofstream(history_folder / "0000.json") << "{";
+  ASSERT_TRUE(run_until([this] { return events_.find("can be read again") != std::string::npos; }, 5.0));
+  EXPECT_NE(events_.find("write-backs in it: 2"), std::string::npos) << events_;
+  EXPECT_NE(events_.find("0000.json: holds no write-back"), std::string::npos) << events_;
+  EXPECT_TRUE(std::filesystem::exists(history_folder / "0002.json"));
+  EXPECT_EQ(set_track(0.43).error, "");
+  ASSERT_EQ(history().size(), 3U);
+  EXPECT_EQ(history()[0]["id"], "0003");
+  ASSERT_EQ(call("Rollback").error, "");
+  EXPECT_NEAR(track(), 0.42, 1e-6);
+}
+
+// Without a journal nothing waits to be written to the history, which would be refused in any case.
+TEST_F(WayHome, nothing_is_written_while_nobody_knows_which_entries_there_are) {
+  ASSERT_EQ(set_track(0.41).error, "");
+  const auto history_folder = folder_ / "state" / "history", aside = folder_ / "aside";
+  end_service();
+  std::filesystem::rename(history_folder, aside);
+  std::filesystem::remove(folder_ / "state" / "journal");
+  std::ofstream(history_folder) << "no folder";
+  start_service();
+  ASSERT_TRUE(run_until([this] { return ready(); }, 20.0));
+  const auto reply = set_track(0.42);
+  EXPECT_NE(reply.parameters.find("cannot read the history: "), std::string::npos) << reply.parameters;
+  EXPECT_NEAR(track(), 0.41, 1e-6);
+  std::filesystem::remove(history_folder);
+  std::filesystem::rename(aside, history_folder);
+  ASSERT_TRUE(run_until([this] { return events_.find("can be read again") != std::string::npos; }, 5.0));
+  ASSERT_EQ(set_track(0.42).error, "");
+  EXPECT_EQ(history()[0]["id"], "0002");
+}
+
+TEST_F(WayHome, a_damaged_record_of_the_last_run_is_told) {
+  end_service();
+  std::ofstream(folder_ / "state" / "last_run.json") << "{";
+  start_service();
+  ASSERT_TRUE(run_until([this] { return ready(); }, 20.0));
+  EXPECT_NE(events_.find("last_run: " + (folder_ / "state" / "last_run.json").string() + ": is damaged; "),
+            std::string::npos)
+      << events_;
+  const json status = json::parse(service_->status_json());
+  EXPECT_NE(status["last_stop"].get<std::string>().find("not known: "), std::string::npos) << status;
+  events_.clear();
+  restart();
+  EXPECT_EQ(events_.find("last_run:"), std::string::npos) << events_;
+}
+
 TEST_F(WayHome, damage_of_the_journal_is_told_at_the_start) {
   ASSERT_EQ(set_track(0.41).error, "");
   end_service();

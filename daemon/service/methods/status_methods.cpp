@@ -36,8 +36,8 @@ Reading get_history(Context& context, const Call& call) {
   const int limit = given.whole("limit", std::numeric_limits<int>::max());
   if (given.wrong() || limit < 0) return WrongParameter{"limit"};
   const History& history = context.parts.write_back.history;
-  // An empty list would say that nothing was ever written.
-  if (history.unlisted() && history.entries().empty()) return *history.unlisted();
+  // A part of the list, or an empty one, would say that nothing else was ever written.
+  if (history.unlisted()) return *history.unlisted();
   ordered_json list = ordered_json::array();
   for (const auto& entry : history.entries())
     if (list.size() < static_cast<std::size_t>(limit))

@@ -2,6 +2,7 @@
 
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <type_traits>
 #include <utility>
 
 #include "proto/file_bytes.hpp"
@@ -19,22 +20,64 @@ void replace(const std::filesystem::path& file, const std::string& text) {
   std::filesystem::rename(fresh, file, ignored);
 }
 
+/// The content of a file; a member that it lacks is as if nothing had happened.
+struct RunRecord {
+  bool ended = true, moved = false;
+  std::string doing, last_stop;
+  std::optional<Error> damage;
+};
+
+Error damaged_record(const std::filesystem::path& file, const std::string& what) {
+  return {ErrorCode::format, what, file.string(),
+          "why the robot was stopped last, and whether the daemon before this one crashed, may be missing; "
+          "check the disk"};
+}
+
+/// @param wrong set where a member is there and is of another type
+template <typename T>
+void take_member(const json& body, const char* name, T& value, bool& wrong) {
+  const auto member = body.find(name);
+  if (member == body.end()) return;  // an earlier version did not write it
+  constexpr bool kFlag = std::is_same_v<T, bool>;
+  if (kFlag ? member->is_boolean() : member->is_string())
+    value = member->get<T>();
+  else
+    wrong = true;
+}
+
+RunRecord run_record_of(const std::filesystem::path& file) {
+  RunRecord left;
+  std::error_code unknown;
+  if (std::filesystem::symlink_status(file, unknown).type() == std::filesystem::file_type::not_found)
+    return left;
+  const auto bytes = read_file_bytes(file);
+  if (!bytes) {
+    left.damage = damaged_record(file, "cannot be read: " + bytes.error().what);
+    return left;
+  }
+  const json body = json::parse(bytes.value(), nullptr, false);
+  bool wrong = !body.is_object();
+  if (!wrong) {
+    take_member(body, "ended", left.ended, wrong);
+    take_member(body, "moved", left.moved, wrong);
+    take_member(body, "doing", left.doing, wrong);
+    take_member(body, "last_stop", left.last_stop, wrong);
+  }
+  if (wrong) left.damage = damaged_record(file, "is damaged");
+  return left;
+}
+
 }  // namespace
 
 LastRun::LastRun(std::filesystem::path file, Background& disk) : file_(std::move(file)), disk_(disk) {
-  const auto bytes = read_file_bytes(file_);
-  const json left = bytes ? json::parse(bytes.value(), nullptr, false) : json();
-  const auto text = [&left](const char* name) {
-    return left.contains(name) && left[name].is_string() ? left[name].get<std::string>() : "";
-  };
-  if (left.is_object()) {
-    moved_ = left.contains("moved") && left["moved"] == true;
-    const std::string doing = text("doing");
-    after_crash_ = left.contains("ended") && left["ended"] == false;
-    last_stop_ = !after_crash_ ? text("last_stop")
-                               : "the daemon before this one ended without being stopped" +
-                                     (doing.empty() ? "" : ", during \"" + doing + "\"");
-  }
+  RunRecord left = run_record_of(file_);
+  moved_ = left.moved;
+  after_crash_ = !left.ended;
+  damage_ = std::move(left.damage);
+  last_stop_ = after_crash_ ? "the daemon before this one ended without being stopped" +
+                                  (left.doing.empty() ? "" : ", during \"" + left.doing + "\"")
+                            : std::move(left.last_stop);
+  if (damage_ && last_stop_.empty()) last_stop_ = "not known: " + file_.string() + " " + damage_->what;
   write();
 }
 

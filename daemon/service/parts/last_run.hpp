@@ -3,9 +3,11 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 
 #include "daemon/writeback/background.hpp"
+#include "proto/result.hpp"
 
 namespace odomcalib {
 
@@ -14,9 +16,12 @@ class LastRun {
   /// Reads what the daemon before has left. @param disk outlives this
   LastRun(std::filesystem::path file, Background& disk);
 
+  /// Why nobody knows all that the daemon before has left; nullopt: it is known, or there was none.
+  [[nodiscard]] const std::optional<Error>& damage() const { return damage_; }
   /// The daemon before ended without being stopped.
   [[nodiscard]] bool after_crash() const { return after_crash_; }
-  /// Why the robot was stopped last, by this daemon or an earlier one; empty: never.
+  /// Why the robot was stopped last, by this daemon or an earlier one; empty: never. Says so where that is
+  /// not known.
   [[nodiscard]] const std::string& last_stop() const { return last_stop_; }
 
   /// Something that moves the robot has begun before, in this state directory.
@@ -38,6 +43,7 @@ class LastRun {
   Background& disk_;
   bool after_crash_ = false, ended_ = false, moved_ = false;
   std::string doing_, last_stop_;
+  std::optional<Error> damage_;
 };
 
 }  // namespace odomcalib

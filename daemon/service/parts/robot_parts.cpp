@@ -28,6 +28,7 @@ RobotParts::RobotParts(const Config& configuration, Clock& time, Calibrator func
   if (drive.nominal().robot_id.empty())
     outbox.event(messages::Severity::warning, "robot_id",
                  "robot.id is not configured: this daemon cannot tell robots apart, and asks at each apply");
+  if (const auto& why = last_run.damage()) outbox.event(messages::Severity::warning, "last_run", why->text());
   if (last_run.after_crash()) outbox.event(messages::Severity::warning, "restarted", last_run.last_stop());
   drive.link.watch_frames([this](const drivers::CanFrame& frame) { outbox.frame(frame); });
 }

@@ -203,7 +203,6 @@ FormerValues values_at(const WayBack& way, const Stage& stage,
 /// @param id empty: of any
 Error no_entry(const History& history, const std::string& id) {
   constexpr const char* kSee = "odomcalibctl history";
-  if (history.unlisted() && !history.find(id)) return *history.unlisted();
   const auto& damaged = history.unreadable();
   const auto own = std::ranges::find_if(damaged, [&](const auto& file) { return file.stem() == id; });
   if (own != damaged.end())
@@ -235,6 +234,8 @@ Result<FormerValues> WriteBack::former_values(const WayWanted& wanted, const std
   const auto interrupted = transaction.journal().unfinished();
   if (named.empty() && interrupted && !interrupted->before.empty() && !wanted.replaced)
     return before_interrupted(*interrupted, device, in_force);
+  // The newest entry of a part of the history is any entry, and so is the one before it.
+  if (history.unlisted()) return *history.unlisted();
   const auto found = named.empty() ? history.newest_committed() : history.find(named);
   if (!found || found->outcome != name_of(WriteOutcome::committed)) return no_entry(history, named);
   const bool foreign = of_another(*found, device);

@@ -100,6 +100,7 @@ class WriteBack {
   DriveProof proof;        ///< what was driven with the values in force
   std::vector<HistoryEntry> unwritten;  ///< entries that the disk did not take: the journal has them
   std::optional<WriteEnd> ended;
+  double next_look = 0.0;  ///< s, at a history that cannot be listed
 
  private:
   void begin_reading(const drivers::Controller& controller, bool values_known, double now);

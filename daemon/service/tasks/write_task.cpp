@@ -14,6 +14,8 @@ Result<std::unique_ptr<Task>> WriteTask::begin(const Parts& parts, const Caller&
                                                double now) {
   if (parts.write_back.busy())
     return Error{ErrorCode::busy, "another write-back is running", "", "wait for its end"};
+  // Its entry would get the number of one that is there and cannot be seen.
+  if (const auto& why = parts.write_back.history.unlisted()) return *why;
   std::unique_ptr<WriteTask> task(new WriteTask(parts, caller, order, now));
   task->announce();
   return std::unique_ptr<Task>(std::move(task));

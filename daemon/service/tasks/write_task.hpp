@@ -51,8 +51,8 @@ class WriteTask final : public ParameterTask {
     std::string place = {};                       ///< where a rollback goes, in words
     Provenance origin = {};
   };
-  /// Error: refused while another write-back runs. Errors of announcing the calibration (io) and of
-  /// Transaction::write end the task.
+  /// Errors: busy while another write-back runs; io while nobody knows which entries the history has. Errors
+  /// of announcing the calibration (io) and of Transaction::write end the task.
   static Result<std::unique_ptr<Task>> begin(const Parts& parts, const Caller& caller, const Order& order,
                                              double now);
 

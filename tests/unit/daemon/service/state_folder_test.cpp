@@ -79,13 +79,42 @@ TEST_F(StateFolderTest, LastRun_knows_whether_the_robot_has_ever_moved) {
   }
 }
 
-TEST_F(StateFolderTest, LastRun_takes_a_damaged_file_for_none) {
-  for (const char* text : {"", "{", "[1]", R"({"ended": 3, "doing": 4, "last_stop": null})"}) {
-    std::ofstream(path_ / "last_run.json") << text;
-    const LastRun run(path_ / "last_run.json", foreground());
-    EXPECT_EQ(run.last_stop(), "") << text;
+TEST_F(StateFolderTest, LastRun_says_that_a_damaged_file_is_damaged) {
+  const fs::path file = path_ / "last_run.json";
+  for (const char* text : {"", "{", "[1]", R"({"ended": 3, "doing": 4, "last_stop": null})",
+                           R"({"ended": true, "doing": "", "last_stop": "", "moved": 1})"}) {
+    std::ofstream(file) << text;
+    const LastRun run(file, foreground());
+    ASSERT_TRUE(run.damage()) << text;
+    EXPECT_EQ(run.damage()->text().find(file.string() + ": is damaged; "), 0U) << run.damage()->text();
+    EXPECT_EQ(run.last_stop(), "not known: " + file.string() + " is damaged") << text;
     EXPECT_FALSE(run.after_crash()) << text;
+    EXPECT_FALSE(run.moved()) << text;
+    EXPECT_FALSE(LastRun(file, foreground()).damage()) << "it was written anew";
   }
+  fs::remove(file);
+  fs::create_directory(file);
+  const LastRun run(file, foreground());
+  ASSERT_TRUE(run.damage());
+  EXPECT_EQ(run.damage()->what, "cannot be read: is a folder");
+}
+
+TEST_F(StateFolderTest, LastRun_keeps_what_of_a_damaged_file_is_sound) {
+  std::ofstream(path_ / "last_run.json")
+      << R"({"ended": false, "doing": "spin", "last_stop": 1, "moved": true})";
+  const LastRun run(path_ / "last_run.json", foreground());
+  EXPECT_TRUE(run.damage());
+  EXPECT_TRUE(run.after_crash());
+  EXPECT_TRUE(run.moved());
+  EXPECT_NE(run.last_stop().find("during \"spin\""), std::string::npos) << run.last_stop();
+}
+
+TEST_F(StateFolderTest, LastRun_takes_no_file_and_that_of_an_earlier_version_for_sound) {
+  EXPECT_FALSE(LastRun(path_ / "last_run.json", foreground()).damage());
+  std::ofstream(path_ / "last_run.json") << R"({"ended": true, "doing": "", "last_stop": "a wall"})";
+  const LastRun run(path_ / "last_run.json", foreground());
+  EXPECT_FALSE(run.damage());
+  EXPECT_EQ(run.last_stop(), "a wall");
 }
 
 }  // namespace

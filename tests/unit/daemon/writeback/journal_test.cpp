@@ -510,6 +510,35 @@ TEST(History, that_cannot_be_listed_is_not_an_empty_one) {
   EXPECT_FALSE(std::filesystem::exists(path));
 }
 
+TEST(History, takes_over_what_a_later_look_finds_and_keeps_what_that_does_not_know) {
+  const TemporaryFolder folder;
+  const auto path = folder / "history";
+  HistoryEntry first, second;
+  first.id = "0001";
+  second.id = "0002";
+  first.outcome = "committed";
+  second.outcome = "unknown";
+  first.calibration = R"({"format":"x"})";
+  ASSERT_TRUE(History(path).write(first).ok() && History(path).write(second).ok());
+  std::filesystem::rename(path, folder / "aside");
+  std::filesystem::create_symlink(path, path);
+  History history(path);
+  first.calibration.reset();  // as the journal has them
+  second.outcome = "committed";
+  for (const HistoryEntry& entry : {first, second}) history.keep(entry);
+  history.take_over(History(path));
+  EXPECT_TRUE(history.unlisted());
+  std::filesystem::remove(path);
+  std::filesystem::rename(folder / "aside", path);
+  history.take_over(History(path));
+  EXPECT_FALSE(history.unlisted());
+  ASSERT_EQ(history.entries().size(), 2U);
+  EXPECT_EQ(history.entries()[0].outcome, "committed");
+  EXPECT_TRUE(history.entries()[1].calibration);
+  EXPECT_EQ(history.numbered({}).id, "0003");
+  EXPECT_TRUE(history.write(history.numbered(first)).ok());
+}
+
 class FullHistory : public testing::Test {
  protected:
   void SetUp() override {
