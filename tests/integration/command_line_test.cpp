@@ -153,6 +153,25 @@ TEST_F(CommandLine, a_folder_that_is_not_there_is_told_before_the_daemon_is_aske
   EXPECT_THAT(got.err, HasSubstr("absent/cal.json"));
 }
 
+TEST_F(CommandLine, moves_that_were_driven_before_have_no_options_of_a_drive) {
+  write("moves.json", "{}");
+  for (const auto& [verb, option] : {std::pair("straight", "--repeat 2"),
+                                     {"straight", "--one-way"},
+                                     {"spin", "--repeat 2"},
+                                     {"spin", "--turns 2"},
+                                     {"spin", "--direction cw"}}) {
+    const std::string call = std::string("--socket /nonexistent/control ") + verb + " --of moves.json ";
+    const auto got = ctl(call + option);
+    const std::string name = std::string(option).substr(0, std::string(option).find(' '));
+    EXPECT_EQ(got.status, 2) << verb << option << got.out;
+    EXPECT_THAT(got.err, AllOf(HasSubstr("excludes"), HasSubstr(name), HasSubstr("--of"))) << verb << option;
+    EXPECT_THAT(ctl(call).err, Not(HasSubstr("excludes"))) << verb;
+  }
+  const auto got = ctl("--socket /nonexistent/control straight --of moves.json --distance 2");
+  EXPECT_EQ(got.status, 2) << got.out;
+  EXPECT_THAT(got.err, HasSubstr("the moves were driven before"));
+}
+
 TEST_F(CommandLine, values_that_are_no_numbers_are_refused_by_name_where_they_are_used) {
   auto broken = calibration();
   broken.parameters.back().second.value = std::nan("");
