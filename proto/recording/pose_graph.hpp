@@ -39,16 +39,24 @@ struct GraphEdge {
   std::array<double, 6> information{};
 };
 
+/// Another number of a vertex: the file says that both are one place.
+struct GraphAlias {
+  std::int64_t id = 0;
+  std::size_t vertex = 0;  ///< position in PoseGraph::vertices
+};
+
 struct PoseGraph {
-  std::vector<GraphVertex> vertices;  ///< in the order of the file
+  std::vector<GraphVertex> vertices;  ///< in the order of the file; each place once
+  std::vector<GraphAlias> aliases;    ///< in the order of the file
   std::vector<GraphEdge> edges;       ///< in the order of the file
   bool has_positions = true;          ///< false: the file had edges only, all vertices are at the origin
   std::vector<std::string> notes;     ///< what was skipped in reading, one line each
 };
 
 /// Reads g2o text (VERTEX_SE2, EDGE_SE2, VERTEX_XY, EDGE_SE2_XY, FIX) and the older TORO text (VERTEX2,
-/// EDGE2, also VERTEX and EDGE), whose information is ordered xx xy yy tt xt yt. Several files are read as
-/// one, e.g. vertices and edges apart; any may be packed with gzip.
+/// EDGE2, also VERTEX and EDGE, EQUIV), whose information is ordered xx xy yy tt xt yt. Vertices that EQUIV
+/// names as one place become one, the first of them in the file. Several files are read as one, e.g. vertices
+/// and edges apart; any may be packed with gzip.
 /// Error: io; format with file and line for anything that cannot be used as it stands.
 Result<PoseGraph> read_pose_graph(std::span<const std::filesystem::path> files,
                                   const UnpackLimit& limit = {});
@@ -56,7 +64,9 @@ Result<PoseGraph> read_pose_graph(std::span<const std::filesystem::path> files,
 /// The same from memory. @param where names the text in errors
 Result<PoseGraph> read_pose_graph_text(std::string_view text, const std::string& where);
 
-/// g2o text with the shortest decimals that read back as the same numbers; headings in (-pi, pi].
+/// g2o text with the shortest decimals that read back as the same numbers; headings in (-pi, pi]. An alias is
+/// a vertex at the place that it names, and an EQUIV line; edges name the vertex itself, so programs that do
+/// not know EQUIV see the same graph.
 std::string to_g2o(const PoseGraph& graph);
 
 }  // namespace odomcalib

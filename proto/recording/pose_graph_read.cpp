@@ -3,6 +3,7 @@
 #include <charconv>
 #include <cmath>
 #include <map>
+#include <numeric>
 #include <optional>
 #include <unordered_map>
 
@@ -14,8 +15,10 @@ namespace {
 
 /// Rounding in text may push a singular matrix slightly below zero; relative to its unit diagonal.
 constexpr double kPositiveTolerance = 1e-6;
+// Tags that a message names; a file that is no pose graph may have one in every line.
+constexpr std::size_t kNamedTags = 20;
 
-enum class LineKind { vertex_pose, vertex_point, edge_pose, edge_pose_old, edge_point, fix };
+enum class LineKind { vertex_pose, vertex_point, edge_pose, edge_pose_old, edge_point, equivalent, fix };
 
 struct Tag {
   LineKind kind;
@@ -29,8 +32,41 @@ std::optional<Tag> known_tag(std::string_view name) {
   if (name == "EDGE_SE2") return Tag{LineKind::edge_pose, 2, 9};
   if (name == "EDGE2" || name == "EDGE") return Tag{LineKind::edge_pose_old, 2, 9};
   if (name == "EDGE_SE2_XY") return Tag{LineKind::edge_point, 2, 5};
+  if (name == "EQUIV") return Tag{LineKind::equivalent, 2, 0};
   if (name == "FIX") return Tag{LineKind::fix, 1, 0};
   return std::nullopt;
+}
+
+/// Every vertex and edge of g2o and TORO has one of the two words in its tag, as TUTORIAL_VERTEX_SE2 has.
+bool names_vertex_or_edge(std::string_view tag) {
+  std::string upper(tag);
+  std::transform(upper.begin(), upper.end(), upper.begin(),
+                 [](char c) { return c >= 'a' && c <= 'z' ? static_cast<char>(c - 'a' + 'A') : c; });
+  return upper.find("VERTEX") != std::string::npos || upper.find("EDGE") != std::string::npos;
+}
+
+struct CountedTag {
+  std::string tag;
+  std::size_t lines = 0;
+};
+
+void count(std::vector<CountedTag>& tags, const std::string& tag) {
+  const auto known =
+      std::find_if(tags.begin(), tags.end(), [&](const CountedTag& one) { return one.tag == tag; });
+  if (known != tags.end())
+    ++known->lines;
+  else if (tags.size() < kNamedTags)
+    tags.push_back({tag, 1});
+  else
+    count(tags, "other");
+}
+
+std::string list_of(const std::vector<CountedTag>& tags) {
+  std::string list;
+  for (const auto& [tag, lines] : tags)
+    list += (list.empty() ? "\"" : ", \"") + tag + "\" (" + std::to_string(lines) +
+            (lines == 1 ? " line)" : " lines)");
+  return list;
 }
 
 std::string_view next_word(std::string_view& line) {
@@ -83,14 +119,19 @@ class Reader {
   [[nodiscard]] std::string where() const { return name_ + ":" + std::to_string(line_); }
 
   Result<void> read_line(std::string_view line);
-  Result<void> skip(std::string_view tag);
+  void skip(std::string_view tag);
   Result<void> read_known(const Tag& tag, std::string_view name, std::string_view rest);
   Result<void> add_vertex(const Tag& tag, std::int64_t id, const std::array<double, 9>& numbers);
   Result<void> add_edge(const Tag& tag, const std::array<std::int64_t, 2>& ids,
                         const std::array<double, 9>& numbers);
+  Result<void> add_equivalence(const std::array<std::int64_t, 2>& ids);
   Result<void> add_fixes(std::string_view rest);
   void place_vertices_of_edges();
+  [[nodiscard]] Error no_graph() const;
   Result<std::size_t> find(std::int64_t id, const std::string& where) const;
+  Result<void> join_places();
+  void keep_places(const std::vector<std::size_t>& place);
+  void note_what_was_left_out();
   Result<void> link(Reference& reference);
 
   std::string name_;
@@ -100,12 +141,20 @@ class Reader {
   std::vector<std::string> declared_;                        // where each vertex stands, for duplicates
   std::vector<Reference> edges_;
   std::vector<Reference> fixes_;
-  std::map<std::string, std::size_t, std::less<>> skipped_;  // tag -> lines
+  std::vector<Reference> equivalences_;
+  std::size_t within_place_ = 0;  // edges between two numbers of one place
+  std::vector<CountedTag> skipped_;
+  std::vector<CountedTag> unusable_;  // vertices and edges of other kinds
+  std::string first_unusable_;        // where it stands
 };
 
 Result<void> Reader::read(std::string_view text, const std::string& name) {
   name_ = name;
   line_ = 0;
+  constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
+  if (text.starts_with(kByteOrderMark)) text.remove_prefix(kByteOrderMark.size());
+  if (text.starts_with("\xFF\xFE") || text.starts_with("\xFE\xFF"))
+    return Error{ErrorCode::format, "is text in UTF-16", name_, "save it as UTF-8"};
   while (!text.empty()) {
     ++line_;
     const auto line = text.substr(0, text.find('\n'));
@@ -119,20 +168,19 @@ Result<void> Reader::read_line(std::string_view line) {
   const auto name = next_word(line);
   if (name.empty() || name.starts_with('#')) return {};
   const auto tag = known_tag(name);
-  if (!tag) return skip(name);
+  if (!tag) {
+    skip(name);
+    return {};
+  }
   return tag->kind == LineKind::fix ? add_fixes(line) : read_known(*tag, name, line);
 }
 
 /// Another vertex or edge would change the answer; other lines (parameters, laser scans) would not.
-Result<void> Reader::skip(std::string_view tag) {
+void Reader::skip(std::string_view tag) {
   const std::string shown(tag.substr(0, 40));
-  if (tag.starts_with("VERTEX") || tag.starts_with("EDGE"))
-    return error("\"" + shown + "\" is no planar vertex or edge that can be used",
-                 "planar graphs hold VERTEX_SE2, VERTEX_XY, EDGE_SE2, EDGE_SE2_XY");
-  constexpr std::size_t kNamedTags = 20;
-  const bool named = skipped_.contains(shown) || skipped_.size() < kNamedTags;
-  ++skipped_[named ? shown : "other"];
-  return {};
+  if (!names_vertex_or_edge(tag)) return count(skipped_, shown);
+  if (unusable_.empty()) first_unusable_ = where();
+  count(unusable_, shown);
 }
 
 Result<void> Reader::read_known(const Tag& tag, std::string_view name, std::string_view rest) {
@@ -153,6 +201,7 @@ Result<void> Reader::read_known(const Tag& tag, std::string_view name, std::stri
                    "correct or remove the line");
   }
   if (!next_word(rest).empty()) return error(expected + ", this line has more", "is the tag right?");
+  if (tag.kind == LineKind::equivalent) return add_equivalence(ids);
   return tag.ids == 1 ? add_vertex(tag, ids[0], numbers) : add_edge(tag, ids, numbers);
 }
 
@@ -190,6 +239,11 @@ Result<void> Reader::add_edge(const Tag& tag, const std::array<std::int64_t, 2>&
         "the information matrix of " + edge + " is not positive semidefinite",
         "EDGE_SE2 is ordered xx xy xt yy yt tt, EDGE2 and EDGE xx xy yy tt xt yt: is the tag right?");
   edges_.push_back(std::move(reference));
+  return {};
+}
+
+Result<void> Reader::add_equivalence(const std::array<std::int64_t, 2>& ids) {
+  equivalences_.push_back({ids, false, {}, where()});
   return {};
 }
 
@@ -236,16 +290,83 @@ Result<void> Reader::link(Reference& reference) {
   if (graph_.vertices[from.value()].kind != VertexKind::pose || graph_.vertices[to.value()].kind != wanted)
     return Error{ErrorCode::format, "the edge does not fit the kind of its vertices", reference.where,
                  "EDGE_SE2 joins two VERTEX_SE2, EDGE_SE2_XY a VERTEX_SE2 and a VERTEX_XY"};
+  if (from.value() == to.value()) {
+    ++within_place_;
+    return {};
+  }
   reference.edge.from = from.value();
   reference.edge.to = to.value();
   graph_.edges.push_back(reference.edge);
   return {};
 }
 
+/// Each group of vertices that EQUIV lines join becomes its first vertex in the file, with its start value.
+Result<void> Reader::join_places() {
+  if (equivalences_.empty()) return {};
+  std::vector<std::size_t> place(graph_.vertices.size());
+  std::iota(place.begin(), place.end(), 0);
+  const auto first_of = [&](std::size_t vertex) {
+    while (place[vertex] != vertex) vertex = place[vertex] = place[place[vertex]];
+    return vertex;
+  };
+  for (const Reference& same : equivalences_) {
+    const auto one = find(same.ids[0], same.where), other = find(same.ids[1], same.where);
+    if (!one) return one.error();
+    if (!other) return other.error();
+    if (graph_.vertices[one.value()].kind != graph_.vertices[other.value()].kind)
+      return Error{ErrorCode::format, "a pose and a landmark cannot be one place", same.where,
+                   "EQUIV joins two poses or two landmarks"};
+    const std::size_t a = first_of(one.value()), b = first_of(other.value());
+    place[std::max(a, b)] = std::min(a, b);
+  }
+  for (std::size_t v = 0; v < place.size(); ++v) place[v] = first_of(v);
+  keep_places(place);
+  return {};
+}
+
+/// @param place for each vertex the first vertex of its place
+void Reader::keep_places(const std::vector<std::size_t>& place) {
+  std::vector<GraphVertex> kept;
+  std::vector<std::size_t> position(place.size());
+  for (std::size_t v = 0; v < place.size(); ++v) {
+    if (place[v] == v) {
+      position[v] = kept.size();
+      kept.push_back(graph_.vertices[v]);
+    } else {
+      position[v] = position[place[v]];
+      graph_.aliases.push_back({graph_.vertices[v].id, position[v]});
+    }
+    positions_[graph_.vertices[v].id] = position[v];
+  }
+  graph_.vertices = std::move(kept);
+}
+
+Error Reader::no_graph() const {
+  const std::string others = skipped_.empty() ? "" : "; other lines: " + list_of(skipped_);
+  return {ErrorCode::format, "no vertex and no edge" + others, name_,
+          "give a pose graph in g2o or TORO text"};
+}
+
+void Reader::note_what_was_left_out() {
+  for (const auto& [tag, lines] : skipped_)
+    graph_.notes.push_back("skipped " + std::to_string(lines) + " lines \"" + tag + "\"");
+  if (!graph_.aliases.empty())
+    graph_.notes.push_back("EQUIV: " + std::to_string(graph_.aliases.size()) +
+                           " vertex numbers name the place of another vertex, the first: " +
+                           std::to_string(graph_.aliases.front().id) + " is " +
+                           std::to_string(graph_.vertices[graph_.aliases.front().vertex].id));
+  if (within_place_ > 0)
+    graph_.notes.push_back("left out " + std::to_string(within_place_) +
+                           " edges between two numbers of one place (EQUIV)");
+}
+
 Result<PoseGraph> Reader::finish() {
+  if (!unusable_.empty())
+    return Error{ErrorCode::format, "no planar vertex or edge that can be used: " + list_of(unusable_),
+                 first_unusable_, "planar graphs hold VERTEX_SE2, VERTEX_XY, EDGE_SE2, EDGE_SE2_XY"};
   if (graph_.vertices.empty()) place_vertices_of_edges();
-  if (graph_.vertices.empty())
-    return Error{ErrorCode::format, "no vertex and no edge", name_, "give a pose graph in g2o or TORO text"};
+  if (graph_.vertices.empty()) return no_graph();
+  if (auto joined = join_places(); !joined) return joined.error();
   graph_.edges.reserve(edges_.size());
   for (Reference& reference : edges_)
     if (auto linked = link(reference); !linked) return linked.error();
@@ -254,8 +375,7 @@ Result<PoseGraph> Reader::finish() {
     if (!vertex) return vertex.error();
     graph_.vertices[vertex.value()].fixed = true;
   }
-  for (const auto& [tag, lines] : skipped_)
-    graph_.notes.push_back("skipped " + std::to_string(lines) + " lines \"" + tag + "\"");
+  note_what_was_left_out();
   return std::move(graph_);
 }
 

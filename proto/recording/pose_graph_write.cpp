@@ -56,6 +56,17 @@ void append_edge(std::string& text, const PoseGraph& graph, const GraphEdge& edg
 std::string to_g2o(const PoseGraph& graph) {
   std::string text;
   for (const GraphVertex& vertex : graph.vertices) append_vertex(text, vertex);
+  for (const GraphAlias& alias : graph.aliases) {
+    GraphVertex same = graph.vertices[alias.vertex];
+    same.id = alias.id;
+    append_vertex(text, same);
+  }
+  for (const GraphAlias& alias : graph.aliases) {
+    text += "EQUIV";
+    append_number(text, graph.vertices[alias.vertex].id);
+    append_number(text, alias.id);
+    text += '\n';
+  }
   for (const GraphVertex& vertex : graph.vertices) {
     if (!vertex.fixed) continue;
     text += "FIX";

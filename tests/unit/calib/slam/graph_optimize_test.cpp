@@ -58,6 +58,21 @@ TEST(GraphOptimize, S2_06_one_metre_on_eight_tenths_back_and_at_the_start_again)
   EXPECT_NEAR(summary.chi2_after, 0.04 / 3.0, 1e-12);
 }
 
+TEST(GraphOptimize, two_numbers_of_one_place_close_the_loop) {
+  auto graph = graph_of(
+      "VERTEX2 0 0 0 0\nVERTEX2 1 1 0 0\nVERTEX2 2 2 0 0\nVERTEX2 3 2.5 0.4 0.1\n"
+      "EDGE2 0 1 1 0 0 500 0 500 5000 0 0\nEDGE2 1 2 1 0 0 500 0 500 5000 0 0\n"
+      "EDGE2 0 3 2.2 0 0 500 0 500 5000 0 0\nEQUIV 2 3\n");
+  fix_first_pose(graph);
+  const auto summary = optimize_graph(graph);
+  EXPECT_NEAR(graph.vertices[2].x, 2.0 + 0.4 / 3.0, 1e-9);
+  EXPECT_NEAR(summary.chi2_after, 3.0 * 500.0 * std::pow(0.2 / 3.0, 2), 1e-9);
+  // Both numbers stand at that place in what is written.
+  const std::string text = to_g2o(graph);
+  EXPECT_NE(text.find("VERTEX_SE2 2 2.13333333"), std::string::npos) << text;
+  EXPECT_NE(text.find("VERTEX_SE2 3 2.13333333"), std::string::npos) << text;
+}
+
 TEST(GraphOptimize, S2_07_without_the_loop_the_odometry_stays) {
   const auto graph = solved(along_x(0, 1, 1.0) + along_x(1, 2, -0.8));
   EXPECT_NEAR(graph.vertices[1].x, 1.0, 1e-12);

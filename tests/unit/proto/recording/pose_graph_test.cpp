@@ -111,6 +111,69 @@ TEST(PoseGraphText, other_lines_are_skipped_and_counted) {
   EXPECT_EQ(graph.notes[0], "skipped 2 lines \"PARAMS_SE2OFFSET\"");
 }
 
+TEST(PoseGraphText, numbers_that_are_one_place_become_one_vertex) {
+  const std::string edges =
+      "EDGE2 0 1 1 0 0 500 0 500 5000 0 0\nEDGE2 3 1 2 0 0 500 0 500 5000 0 0\n"
+      "EDGE2 2 4 0 0 0 500 0 500 5000 0 0\nFIX 4\n";
+  const std::string vertices =
+      "VERTEX2 0 0 0 0\nVERTEX2 2 1 2 3\nVERTEX2 1 1 0 0\nVERTEX2 4 5 0 0\nVERTEX2 3 6 0 0\n";
+  // In any order and by way of a third number.
+  const std::vector<std::string> texts{"EQUIV 3 4\nEQUIV 4 2\n" + vertices + edges,
+                                       vertices + edges + "EQUIV 2 3\nEQUIV 3 4\nEQUIV 4 2\nEQUIV 2 2\n"};
+  for (const std::string& text : texts) {
+    const auto graph = good(text);
+    ASSERT_EQ(graph.vertices.size(), 3U) << text;
+    EXPECT_EQ(graph.vertices[1].id, 2);
+    EXPECT_EQ(graph.vertices[1].yaw, 3.0) << "the first of the file says where it starts";
+    EXPECT_TRUE(graph.vertices[1].fixed);
+    ASSERT_EQ(graph.aliases.size(), 2U);
+    EXPECT_EQ(graph.aliases[0].id, 4);
+    EXPECT_EQ(graph.aliases[1].vertex, 1U);
+    ASSERT_EQ(graph.edges.size(), 2U) << "an edge within one place says nothing about the others";
+    EXPECT_EQ(graph.edges[1].from, 1U);
+    EXPECT_EQ(graph.edges[1].to, 2U);
+    const auto again = good(to_g2o(graph));
+    EXPECT_EQ(to_g2o(again), to_g2o(graph));
+    EXPECT_EQ(again.aliases.size(), 2U);
+    ASSERT_EQ(graph.notes.size(), 2U);
+    EXPECT_EQ(graph.notes[0], "EQUIV: 2 vertex numbers name the place of another vertex, the first: 4 is 2");
+  }
+  EXPECT_NE(refusal(vertices + "EQUIV 2 9\n").find("test:6: names vertex 9"), std::string::npos);
+  EXPECT_NE(refusal(vertices + "EQUIV 2\n").find("ends after 1"), std::string::npos);
+  EXPECT_NE(refusal("VERTEX_SE2 0 0 0 0\nVERTEX_XY 1 0 0\nEQUIV 0 1\n").find("a landmark"),
+            std::string::npos);
+}
+
+TEST(PoseGraphText, a_byte_order_mark_is_no_part_of_the_first_line) {
+  const std::string mark = "\xEF\xBB\xBF";
+  const std::string edge = "EDGE_SE2 0 1 1 0 0 1 0 0 1 0 1\n";
+  for (const std::string& text : {kTwoPoses + edge, edge, "# made by an editor\r\n" + (kTwoPoses + edge)}) {
+    const auto graph = good(mark + text);
+    EXPECT_EQ(graph.vertices.size(), 2U) << text;
+    EXPECT_EQ(graph.edges.size(), 1U) << text;
+    EXPECT_TRUE(graph.notes.empty()) << text;
+  }
+  const auto vertices = test::write_file("mark-v.g2o", mark + kTwoPoses);
+  const auto edges = test::write_file("mark-e.g2o", mark + edge);
+  const std::vector<std::filesystem::path> files{vertices, edges};
+  EXPECT_TRUE(value_of(read_pose_graph(files)).notes.empty());
+  using namespace std::string_literals;
+  EXPECT_NE(refusal("\xFF\xFEV\0E\0"s).find("UTF-16"), std::string::npos);
+}
+
+TEST(PoseGraphText, vertices_and_edges_of_other_kinds_are_refused_by_name) {
+  const std::string other =
+      "TUTORIAL_VERTEX_SE2 5 1 1 0\nTUTORIAL_VERTEX_SE2 6 1 1 0\nCustomEdge 1 5 1 0 0\n";
+  for (const std::string& text : {other, kTwoPoses + other}) {
+    const std::string told = refusal("PARAMS 1\n" + text);
+    EXPECT_NE(told.find("\"TUTORIAL_VERTEX_SE2\" (2 lines), \"CustomEdge\" (1 line)"), std::string::npos)
+        << told;
+    EXPECT_NE(told.find(text == other ? "test:2" : "test:4"), std::string::npos) << told;
+  }
+  EXPECT_NE(refusal("BEAM 1\nBEAM 2\n").find("no vertex and no edge; other lines: \"BEAM\" (2 lines)"),
+            std::string::npos);
+}
+
 TEST(PoseGraphText, S2_05_writing_and_reading_loses_nothing) {
   constexpr unsigned kSeed = 5;
   std::mt19937 engine(kSeed);
