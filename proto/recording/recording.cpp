@@ -212,6 +212,23 @@ Error not_understood(const std::string& text) {
           "pose"};
 }
 
+/// Whether the object that the text begins with has the member itself, not only an object within it: a pair
+/// of scans names their types too. The text may be cut off.
+bool has_member(std::string_view text, std::string_view name) {
+  std::size_t depth = 0;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    if (text[i] == '{' || text[i] == '[') ++depth;
+    if ((text[i] == '}' || text[i] == ']') && depth > 0) --depth;
+    if (text[i] != '"') continue;
+    const std::size_t begin = ++i;
+    while (i < text.size() && text[i] != '"') i += text[i] == '\\' ? 2 : 1;
+    if (depth != 1 || i >= text.size() || text.substr(begin, i - begin) != name) continue;
+    const auto next = text.find_first_not_of(" \t\r", i + 1);
+    if (next != std::string_view::npos && text[next] == ':') return true;
+  }
+  return false;
+}
+
 }  // namespace
 
 bool is_recording(std::string_view bytes) {
@@ -227,7 +244,7 @@ bool is_recording(std::string_view bytes) {
     case Form::carmen:
       return true;
     case Form::jsonl:
-      return bytes.substr(0, bytes.find('\n')).find("\"type\"") != std::string_view::npos;
+      return has_member(bytes.substr(0, bytes.find('\n')), "type");
     default:
       return false;
   }

@@ -125,6 +125,18 @@ TEST(Recording, counts_values_of_a_wrong_type) {
   }
 }
 
+TEST(Recording, is_told_from_pairs_of_scans_by_the_type_of_the_line_itself) {
+  const std::string scan = R"({"type":"scan","t":0,"ranges":[1]})";
+  for (const std::string& line :
+       {scan, std::string(R"({"t":0,"frame":"a\"}","ranges":[1,{}], "type" : "scan"})"),
+        std::string(R"({"type":"scan","t":0,"ranges":[1,)")})
+    EXPECT_TRUE(is_recording(line + "\n")) << line;
+  for (const std::string& line :
+       {R"({"reference":)" + scan + R"(,"scan":)" + scan + "}", R"({"guess":[0,0,0],"scan":)" + scan + "}",
+        std::string(R"({"note":"type","a":["type"],"b":"\"type\":"})"), R"([)" + scan + "]"})
+    EXPECT_FALSE(is_recording(line + "\n" + scan + "\n")) << line;
+}
+
 TEST(Recording, notices_a_second_robot_of_the_same_sizes) {
   const std::string robot =
       R"({"type":"robot","wheel_diameter":0.154,"track_width":0.33,"ticks_per_rev":2000)";
