@@ -73,9 +73,12 @@ Error missing_unit(const std::string& field, double value, const char* unit, dou
   const std::string remedy = "state it in " + std::string(unit) +
                              " in the robot line or with --robot FILE; odomcalib-robot.toml(5) shows one";
   if (value == 0.0)
-    return {ErrorCode::missing_units, "robot description lacks \"" + field + "\"", where, remedy};
-  const std::string bound =
-      value > 0.0 || std::isnan(value) ? "at most " + number_text(limit) : "greater than 0";
+    return {ErrorCode::missing_units, "robot description lacks \"" + field + "\", or has 0 for it", where,
+            remedy};
+  if (std::isnan(value))
+    return {ErrorCode::missing_units, "robot description has a \"" + field + "\" that is no number", where,
+            remedy};
+  const std::string bound = value > 0.0 ? "at most " + number_text(limit) : "greater than 0";
   return {
       ErrorCode::missing_units,
       "robot description has \"" + field + "\" = " + number_text(value) + ", must be " + bound + " " + unit,
@@ -279,6 +282,10 @@ void RecordingBuilder::join_halves(MotionSource source, Halves& halves, std::vec
   const char* reason = angles ? kNoAngles : kNoSpeeds;
   auto& [left, right] = halves.samples;
   if (!stream.empty() || left.empty() || right.empty()) {
+    if (stream.empty())
+      one_wheel_ = std::to_string(left.size() + right.size()) + " " + name_of(source) + " lines have the " +
+                   (right.empty() ? "left wheel, and none has the right one"
+                                  : "right wheel, and none has the left one");
     discard(name_of(source), reason, left.size() + right.size());
     left.clear();
     right.clear();
@@ -509,6 +516,8 @@ Result<Recording> RecordingBuilder::finished(const std::string& where, const Rob
   merge_robot(fallback);
   count_streams();
   decide_motion();
+  if (need == RobotNeed::required && !one_wheel_.empty() && !has_motion() && recording_.increments.empty())
+    return Error{ErrorCode::empty, one_wheel_, where, "record both wheels: one says nothing of turns"};
   if (need == RobotNeed::required)
     if (auto problem = check_robot(recording_.robot, where)) return *problem;
   sort_streams();

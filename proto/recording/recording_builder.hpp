@@ -106,6 +106,7 @@ class RecordingBuilder {
   std::map<std::string, std::size_t> streams_;  // samples of each kind, with those left out
   std::size_t readings_ = 0;                    // of all scans
   Halves wheel_halves_, speed_halves_;
+  std::string one_wheel_;  // which wheel alone the lines have; empty: they have both
 };
 
 /// Missing or impossible unit-bearing values of a robot description, or nullopt when it is complete.

@@ -82,6 +82,7 @@ class Handler {
   explicit Handler(JsonFields& fields) : fields_(fields) {}
 
   bool null() {
+    if (depth_ == 1 && std::holds_alternative<Scalar>(slot_)) return true;  // absent
     const bool no_reading =
         std::holds_alternative<Array>(slot_) &&
         (std::get<Array>(slot_) == Array::ranges || std::get<Array>(slot_) == Array::intensities);

@@ -68,7 +68,7 @@ struct JsonFields {
   std::array<std::vector<double>, static_cast<std::size_t>(Array::count)> arrays;
   /// A number is its text.
   std::array<std::string, static_cast<std::size_t>(Text::count)> texts;
-  /// Scalars that were written at all, number or not.
+  /// Scalars that were written at all, number or not; null is absent.
   std::array<bool, static_cast<std::size_t>(Scalar::count)> present{};
   /// Names of members whose value is of another type than theirs; null is absent, NaN a number.
   std::vector<std::string_view> wrong_types;

@@ -176,6 +176,21 @@ TEST(Recording, names_the_missing_or_impossible_unit) {
   }
 }
 
+TEST(Recording, says_what_is_wrong_with_a_unit) {
+  const auto told = [](const std::string& diameter, const std::string& ticks) {
+    const auto result =
+        read_text(R"({"type":"robot","wheel_diameter":)" + diameter +
+                  R"(,"track_width":0.3,"ticks_per_rev":)" + ticks + "}\n" + ticks_line(0, 0, 0));
+    return result.ok() ? "was taken" : result.error().what;
+  };
+  EXPECT_EQ(told(R"("0.15")", "2000"), "robot description has a \"wheel_diameter\" that is no number");
+  EXPECT_EQ(told("NaN", "2000"), "robot description has a \"wheel_diameter\" that is no number");
+  EXPECT_EQ(told("null", "2000"), "robot description lacks \"wheel_diameter\", or has 0 for it");
+  EXPECT_EQ(told("0.15", "0"), "robot description lacks \"ticks_per_rev\", or has 0 for it");
+  EXPECT_NE(told("154", "2000").find("must be at most 10"), std::string::npos);
+  EXPECT_EQ(told("0.15", "2000"), "was taken");
+}
+
 TEST(Recording, takes_missing_values_from_the_fallback_and_prefers_its_own) {
   const auto fallback = test::example_robot();
   const auto bare = value_of(read_text(ticks_line(0, 0, 0), &fallback));

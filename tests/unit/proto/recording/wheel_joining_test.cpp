@@ -113,5 +113,32 @@ TEST(WheelJoining, refuses_one_wheel_without_the_other) {
   EXPECT_THAT(result.error().text(), HasSubstr("10 x wheels left out, left or right missing"));
 }
 
+TEST(WheelJoining, says_which_wheel_is_missing_where_scans_are_there) {
+  const std::string robot = R"({"type":"robot","wheel_diameter":0.154,"track_width":0.33})"
+                            "\n";
+  const std::string scan = R"({"type":"scan","t":0.1,"angle_min":0,"angle_increment":0.1,"ranges":[1,2]})"
+                           "\n";
+  for (const std::string type : {"wheels", "wheel_speeds"})
+    for (const std::string other : {"", R"(,"left":null)"}) {
+      std::string text = robot + scan;
+      for (int k = 0; k < 10; ++k)
+        text +=
+            R"({"type":")" + type + R"(","t":)" + std::to_string(0.1 * k) + R"(,"right":0.5)" + other + "}\n";
+      const auto result = read_text(text);
+      ASSERT_FALSE(result.ok());
+      EXPECT_THAT(result.error().text(),
+                  HasSubstr("10 " + type + " lines have the right wheel, and none has the left one"));
+    }
+  // Null stands for the wheel that the line does not have.
+  std::string text = robot;
+  for (int k = 0; k < 100; ++k) {
+    text += half("wheels", 0.02 * k, "left", 0.06 * k);
+    text.insert(text.size() - 2, R"(,"right":null)");
+    text += half("wheels", 0.02 * k + 0.01, "right", 0.08 * k + 0.04);
+    text.insert(text.size() - 2, R"(,"left":null)");
+  }
+  EXPECT_EQ(value_of(read_text(text)).wheels.size(), 99U);
+}
+
 }  // namespace
 }  // namespace odomcalib::wheel_joining_test
