@@ -216,6 +216,11 @@ void RecordingBuilder::add_odometry(PoseSample sample) {
 void RecordingBuilder::add_scan(Scan scan) {
   if (!sane_time(scan.t)) return discard("scan", stamp_problem(scan.t));
   if (const char* problem = scan_problem(scan)) return discard("scan", problem);
+  // Nothing is measured with them.
+  if (!scan.intensities.empty() && scan.intensities.size() != scan.ranges.size()) {
+    discard("value", "intensities do not match ranges");
+    scan.intensities.clear();
+  }
   if (!in_time("scan", scan, scan_clocks_[scan.sensor], recording_.scans)) return;
   const auto problems = clean_scan(scan);
   readings_ += scan.ranges.size();

@@ -82,7 +82,6 @@ const char* scan_problem(const Scan& scan) {
   if (beams > kMostBeams) return "more than 100000 beams";
   if (!scan.angles.empty() && scan.angles.size() != beams) return "angles do not match ranges";
   if (!scan.times.empty() && scan.times.size() != beams) return "times do not match ranges";
-  if (!scan.intensities.empty() && scan.intensities.size() != beams) return "intensities do not match ranges";
   if (scan.angles.empty() && !is_grid(scan)) return "angle_min or angle_increment missing or impossible";
   if (!all_finite(scan.angles)) return "an angle is not a number";
   if (!all_finite(scan.times)) return "a beam time is not a number";

@@ -191,6 +191,20 @@ TEST(Recording, says_what_is_wrong_with_a_unit) {
   EXPECT_EQ(told("0.15", "2000"), "was taken");
 }
 
+TEST(Recording, keeps_the_ranges_of_a_scan_whose_intensities_are_of_another_length) {
+  const auto r =
+      value_of(read_text(kRobotLine + ticks_line(0, 0, 0) +
+                         R"({"type":"scan","t":1,"angle_min":0,"angle_increment":0.1,"ranges":[1,2,3],)"
+                         R"("intensities":[7,8]}
+{"type":"scan","t":2,"angle_min":0,"angle_increment":0.1,"ranges":[1,2,3],"intensities":[7,8,9]}
+)"));
+  ASSERT_EQ(r.scans.size(), 2U) << list_discarded(r);
+  EXPECT_EQ(r.scans[0].ranges.size(), 3U);
+  EXPECT_TRUE(r.scans[0].intensities.empty());
+  EXPECT_EQ(r.scans[1].intensities.size(), 3U);
+  EXPECT_EQ(discarded(r, "value", "intensities do not match ranges"), 1U) << list_discarded(r);
+}
+
 TEST(Recording, takes_missing_values_from_the_fallback_and_prefers_its_own) {
   const auto fallback = test::example_robot();
   const auto bare = value_of(read_text(ticks_line(0, 0, 0), &fallback));
