@@ -1,5 +1,6 @@
 #include "drivers/lidar/ydlidar/packet.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -101,6 +102,13 @@ const Model* find_model(const std::string& name) {
   for (const Model& model : models())
     if (name == model.name) return &model;
   return nullptr;
+}
+
+const Model* model_that_says(const std::string& reported) {
+  std::string name = reported;
+  std::transform(name.begin(), name.end(), name.begin(),
+                 [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; });
+  return find_model(name);
 }
 
 Verdict PacketFinder::take_answer(Bytes rest, std::vector<Item>& out) const {

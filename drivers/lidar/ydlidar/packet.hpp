@@ -29,6 +29,8 @@ struct Model {
 /// nullptr when there is no such model.
 const Model* find_model(const std::string& name);
 const std::vector<Model>& models();
+/// The model that a lidar means which says this name of itself, such as "COIN-D4"; nullptr: none.
+const Model* model_that_says(const std::string& reported);
 
 struct Sample {
   double range_mm = 0.0;   ///< 0: no echo

@@ -39,6 +39,7 @@ class Ydlidar final : public Lidar {
   [[nodiscard]] double step_of(const ydlidar::Packet& packet) const;
   void report_packet(const ydlidar::Packet& packet) const;
   [[nodiscard]] std::optional<Error> wrong_kind() const;
+  [[nodiscard]] std::optional<Error> other_model() const;
 
   LidarOptions options_;
   const ydlidar::Model& model_;
@@ -162,8 +163,19 @@ std::optional<Error> Ydlidar::wrong_kind() const {
                "ydlidar", "set lidar.type to the model that it is, one of " + fitting};
 }
 
+/// Samples of one size have different units and angles in different models: the ranges would be wrong, and
+/// nothing in the stream would show it.
+std::optional<Error> Ydlidar::other_model() const {
+  const ydlidar::Model* said = ydlidar::model_that_says(reported_name_);
+  if (said == nullptr || std::string(said->name) == model_.name) return std::nullopt;
+  return Error{ErrorCode::format,
+               "the lidar calls itself " + reported_name_ + ", and lidar.type says model " + model_.name,
+               "ydlidar", std::string("set lidar.type to ydlidar:") + said->name};
+}
+
 std::optional<Error> Ydlidar::problem() const {
   if (auto wrong = wrong_kind()) return wrong;
+  if (auto other = other_model()) return other;
   const FrameBuffer& frames = finder_.frames();
   if (finder_.packets() == 0 && frames.rejected().at("bad_checksum") > ydlidar::kAllWrong)
     return Error{ErrorCode::format, "every checksum is wrong", "ydlidar",

@@ -73,6 +73,19 @@ TEST(Cases, bytes_of_a_coin_d4_are_its_ranges_and_the_wrong_model_is_told_with_t
   }
 }
 
+TEST(Cases, a_coin_d4_read_as_a_model_with_samples_of_its_size_is_told_by_the_name_it_says) {
+  SKIP_WITHOUT_CASES(folder);
+  const auto file = folder / "coin-d4/coind4.txt";
+  for (const std::string wrong : {"ydlidar:g2", "ydlidar:g4b", "ydlidar:tminipro"}) {
+    const auto problems = named(decoded(wrong, file), "problem");
+    ASSERT_EQ(problems.size(), 1U) << wrong;
+    const std::string text = problems[0]["text"];
+    EXPECT_NE(text.find("calls itself COIN-D4"), std::string::npos) << text;
+    EXPECT_NE(text.find("set lidar.type to ydlidar:coin-d4"), std::string::npos) << text;
+  }
+  EXPECT_TRUE(named(decoded("ydlidar:coin-d4", file), "problem").empty());
+}
+
 /// Equal steps in equal times but for one note of a wild count; no interval without a word.
 void expect_even_motion(const std::vector<json>& lines, double per_second, std::size_t least) {
   const auto ticks = of_type(lines, "ticks");
