@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <filesystem>
+#include <iostream>
 
 #include "proto/file_bytes.hpp"
 
@@ -11,6 +12,21 @@ namespace odomcalib::cli {
 namespace {
 
 namespace fs = std::filesystem;
+
+/// Whether the path leads to this program's standard output by name: /dev/stdout, /dev/fd/1. Another name of
+/// the same terminal or file is not what the user asked for.
+bool is_standard_output(fs::path path) {
+  constexpr int kMostLinks = 40;  // as the kernel
+  std::error_code error;
+  const fs::path standard = fs::canonical("/proc/self/fd", error) / "1";
+  for (int hops = 0; hops < kMostLinks && !error; ++hops) {
+    path = fs::canonical(fs::absolute(path, error).parent_path(), error) / path.filename();
+    if (error || path == standard) break;
+    const fs::path target = fs::read_symlink(path, error);
+    if (!error) path = path.parent_path() / target;
+  }
+  return !error && path == standard;
+}
 
 /// Anything but a regular file (a terminal, /dev/null) loses nothing when it is named twice.
 bool is_kept(const fs::path& path) {
@@ -60,6 +76,7 @@ Result<void> check_outputs(const std::vector<NamedFile>& outputs, const std::vec
     if (is_kept(output.path))
       if (auto apart = check_apart(output, taken); !apart) return apart;
     if (auto writable = check_output(output.path); !writable) return writable;
+    if (is_standard_output(output.path)) std::cout.rdbuf(std::cerr.rdbuf());
     taken.push_back(output);
   }
   return {};

@@ -36,7 +36,8 @@ struct NamedFile {
 };
 
 /// Error: usage, when an output is an input or another output, whatever links and relative paths they are
-/// named by; io, when it could not be written.
+/// named by; io, when it could not be written. Where one of them is the standard output (/dev/stdout), what
+/// the verb prints goes to standard error from then on: the file alone is what the next program reads.
 Result<void> check_outputs(const std::vector<NamedFile>& outputs, const std::vector<NamedFile>& inputs);
 
 /// Files of one argument that may be repeated.

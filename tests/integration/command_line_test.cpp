@@ -6,6 +6,7 @@
 #include <sys/stat.h>
 #include <sys/wait.h>
 
+#include <algorithm>
 #include <atomic>
 #include <cmath>
 #include <fstream>
@@ -145,6 +146,26 @@ TEST_F(CommandLine, an_output_that_is_a_fifo_takes_the_result_and_stays_one) {
   const auto got = ctl("export cal.json --what toml --out fifo & timeout 5 cat fifo; wait $!");
   EXPECT_THAT(got.out, HasSubstr("track_width = 0.4"));
   EXPECT_TRUE(fs::is_fifo(folder_ / "fifo"));
+}
+
+TEST_F(CommandLine, a_result_on_standard_output_stands_there_alone_and_the_summary_on_standard_error) {
+  // A pipe, and a file that the shell opened.
+  for (const std::string end : {" | cat", ""}) {
+    const Outcome predicted = ctl("predict drive.jsonl --calibration nominal --trajectory /dev/stdout" + end);
+    EXPECT_EQ(predicted.status, 0) << predicted.err;
+    EXPECT_EQ(std::count(predicted.out.begin(), predicted.out.end(), '\n'), 101) << predicted.out;
+    EXPECT_THAT(predicted.out, Not(HasSubstr("poses")));
+    EXPECT_THAT(predicted.err, HasSubstr("101 poses, end x"));
+    const Outcome solved = ctl("solve drive.jsonl --effects none --out /proc/self/fd/1" + end);
+    EXPECT_FALSE(json::parse(solved.out, nullptr, false).is_discarded()) << solved.out;
+    EXPECT_THAT(solved.err, HasSubstr("REFUSED"));
+  }
+  const Outcome as_json =
+      ctl("predict drive.jsonl --calibration nominal --json --trajectory /dev/fd/1 | cat");
+  EXPECT_EQ(std::count(as_json.out.begin(), as_json.out.end(), '\n'), 101);
+  EXPECT_EQ(json::parse(as_json.err, nullptr, false).value("poses", 0), 101) << as_json.err;
+  const Outcome usual = ctl("predict drive.jsonl --calibration nominal --trajectory out.tum");
+  EXPECT_THAT(usual.out, HasSubstr("101 poses"));
 }
 
 TEST_F(CommandLine, a_folder_that_is_not_there_is_told_before_the_daemon_is_asked_to_move) {
