@@ -39,8 +39,10 @@ Result<void> Lease::renew(const std::string& id, double now, std::optional<doubl
   return {};
 }
 
-void Lease::release(const std::string& id) {
-  if (id == id_) id_.clear();
+Result<void> Lease::release(const std::string& id) {
+  if (!holds(id)) return refused("this lease is not in force", "nothing has to be released");
+  id_.clear();
+  return {};
 }
 
 void Lease::lost(std::uint64_t owner) {

@@ -28,7 +28,8 @@ class Lease {
   /// @param sent when the client sent it, s on the clock of `now`; nullopt: just now
   /// Error: not_permitted for an unknown or lapsed lease; a lapsed one cannot be renewed.
   Result<void> renew(const std::string& id, double now, std::optional<double> sent = {});
-  void release(const std::string& id);
+  /// Error: not_permitted for an unknown or lapsed lease; the lease of another client stays.
+  Result<void> release(const std::string& id);
   /// The connection is gone.
   void lost(std::uint64_t owner);
   /// Everything that had arrived was read: does it lapse?

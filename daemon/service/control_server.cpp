@@ -266,11 +266,13 @@ std::map<ClientId, Client>::iterator ControlServer::State::next_client() {
   return wrapped == behind ? clients.end() : wrapped;
 }
 
-// A frame that is no call is counted and ends the connection; it is not answered.
+// A frame that is no call is counted, and answered with what is wrong with it; then the connection ends.
 std::optional<control::Call> ControlServer::State::decode(Client& client, const std::string& frame) {
   auto call = control::decode_call(frame);
   if (call) return answer_some(client, std::move(call).value());
   ++counters.malformed;
+  if (const auto answer = control::answer_to_malformed(frame)) client.output += *answer;
+  write_to(client);
   client.gone = true;
   return std::nullopt;
 }

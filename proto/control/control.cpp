@@ -241,6 +241,21 @@ Result<Call> decode_call(std::string_view text) {
   return call;
 }
 
+std::optional<std::string> answer_to_malformed(std::string_view text) {
+  auto object = parse_object(text);
+  if (object.is_null()) return encode_error(decode_call(text).error());
+  bool oneway = false, flag = false;
+  const bool known = take_flag(object, "oneway", oneway);
+  if (oneway) return std::nullopt;
+  const std::string method = text_member(object, "method");
+  if (method.empty()) return encode_invalid_parameter("method");
+  if (!is_qualified_name(method)) return encode_method_not_found(method);
+  ordered_json parameters;
+  if (!take_parameters(object, parameters)) return encode_invalid_parameter("parameters");
+  if (!known) return encode_invalid_parameter("oneway");
+  return encode_invalid_parameter(take_flag(object, "more", flag) ? "upgrade" : "more");
+}
+
 Result<Reply> decode_reply(std::string_view text) {
   auto object = parse_object(text);
   if (object.is_null()) return format_error("reply is not a JSON object or is nested too deep");

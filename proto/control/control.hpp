@@ -71,6 +71,10 @@ std::string encode_error(const Error& error);
 
 /// Error: format (no JSON object, nested too deep, no or malformed method name, a member of a wrong type).
 Result<Call> decode_call(std::string_view frame);
+/// Answer to a client whose frame decode_call refuses: MethodNotFound for a name without an interface,
+/// InvalidParameter with the member for one of a wrong type, Format for no object; nullopt where it asked
+/// for no answer.
+std::optional<std::string> answer_to_malformed(std::string_view frame);
 Result<Reply> decode_reply(std::string_view frame);
 
 /// The error behind a reply with `error` set: of our own names with its code, of org.varlink.service as

@@ -130,10 +130,12 @@ class Peer {
     sent_.feed(bytes);
     while (const auto frame = sent_.next()) {
       const auto call = control::decode_call(*frame);
-      if (call)
+      if (call) {
         whole.push_back(call.value());
-      else
-        refused_ = true;  // what is no call ends the connection
+      } else {
+        refused_ = true;  // what is no call ends the connection, after an answer at most
+        ++calls_;
+      }
     }
     for (const control::Call& call : whole) note(call);
     return whole;

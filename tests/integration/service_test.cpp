@@ -257,6 +257,16 @@ TEST_F(ServiceLoop, an_ended_daemon_leaves_the_wheels_at_rest) {
   EXPECT_LT(robot_->fastest_rim(), 0.01);
 }
 
+TEST_F(ServiceLoop, a_lease_is_released_by_whoever_has_it_and_others_are_told_that_theirs_is_none) {
+  acquire();
+  EXPECT_EQ(ask("Release", {{"lease", "0123456789abcdef"}}, 0.1).error,
+            "org.odomcalib.Calibration.NotPermitted");
+  EXPECT_EQ(ask("Release", {{"lease", 7}}, 0.1).error, "org.varlink.service.InvalidParameter");
+  EXPECT_EQ(ask("Renew", {{"lease", lease_}}, 0.1).error, "") << "it is in force as before";
+  EXPECT_EQ(ask("Release", {{"lease", lease_}}, 0.1).error, "");
+  EXPECT_EQ(ask("Release", {{"lease", lease_}}, 0.1).error, "org.odomcalib.Calibration.NotPermitted");
+}
+
 TEST_F(ServiceLoop, a_daemon_that_is_told_to_end_stops_a_motion_at_once_and_says_why) {
   acquire();
   Mover mover(*this);

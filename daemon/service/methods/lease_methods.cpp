@@ -31,7 +31,11 @@ Reading renew(Context& context, const Call& call) {
 }
 
 Reading release(Context& context, const Call& call) {
-  context.parts.lease.release(CallParameters(call.parameters).text("lease", ""));
+  CallParameters given(call.parameters);
+  const std::string lease = given.text("lease", "");
+  if (given.wrong()) return WrongParameter{*given.wrong()};
+  const auto released = context.parts.lease.release(lease);
+  if (!released) return released.error();
   return Answer{ordered_json::object()};
 }
 

@@ -580,6 +580,18 @@ TEST_F(AskedLease, belongs_to_one_client_and_ends_with_its_connection) {
   EXPECT_TRUE(lease_.acquire(2, 0.1).ok());
 }
 
+TEST_F(AskedLease, is_released_by_its_own_name_alone_and_others_are_told) {
+  const auto foreign = lease_.release("wrong");
+  ASSERT_FALSE(foreign.ok());
+  EXPECT_EQ(foreign.error().code, ErrorCode::not_permitted);
+  EXPECT_FALSE(lease_.release("").ok());
+  EXPECT_TRUE(lease_.holds(id_));
+  EXPECT_TRUE(lease_.release(id_).ok());
+  EXPECT_FALSE(lease_.active());
+  EXPECT_FALSE(lease_.release(id_).ok()) << "twice";
+  EXPECT_FALSE(lease_.release("").ok()) << "there is none";
+}
+
 TEST_F(AskedLease, outlives_a_daemon_that_reads_late_what_had_arrived) {
   look(0.0, 0.05);
   ASSERT_TRUE(lease_.renew(id_, 0.25, 0.23).ok());

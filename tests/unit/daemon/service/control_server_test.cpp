@@ -124,6 +124,38 @@ TEST_F(Burst, keeps_the_order_of_answers_whoever_gives_them) {
   EXPECT_NE(answers[2].parameters.find("third"), std::string::npos);
 }
 
+TEST_F(Burst, that_is_no_call_is_answered_with_what_is_wrong_before_the_connection_ends) {
+  const std::vector<std::array<std::string, 3>> cases{{
+      {R"({"method":"Ping"})", "org.varlink.service.MethodNotFound", "Ping"},
+      {R"({"method":"org.odomcalib.Calibration.GetStatus","parameters":[1]})",
+       "org.varlink.service.InvalidParameter", "parameters"},
+      {R"({"parameters":{}})", "org.varlink.service.InvalidParameter", "method"},
+      {R"({"method":"a.B","more":1})", "org.varlink.service.InvalidParameter", "more"},
+      {R"({"method":"a.B","upgrade":1})", "org.varlink.service.InvalidParameter", "upgrade"},
+      {R"({"method":"a.B","oneway":1})", "org.varlink.service.InvalidParameter", "oneway"},
+      {"[1,2]", "org.odomcalib.Calibration.Format", "JSON object"},
+      {"{\"method", "org.odomcalib.Calibration.Format", "JSON object"},
+  }};
+  std::uint64_t malformed = 0;
+  for (const auto& [text, error, named] : cases) {
+    const auto one = client();
+    one->send_text(text);
+    one->send(1, "GetStatus");
+    EXPECT_TRUE(turn().empty()) << text;
+    const auto answers = one->answers();
+    ASSERT_EQ(answers.size(), 1U) << text;
+    EXPECT_EQ(answers[0].error, error) << text;
+    EXPECT_NE(answers[0].parameters.find(named), std::string::npos) << answers[0].parameters;
+    step();
+    EXPECT_EQ(server_->clients(), 0U) << text;
+    EXPECT_EQ(server_->counters().malformed, ++malformed);
+  }
+  const auto one = client();
+  one->send_text(R"({"method":"Ping","oneway":true})");
+  EXPECT_TRUE(turn().empty());
+  EXPECT_TRUE(one->answers().empty()) << "it asked for no answer";
+}
+
 TEST_F(Burst, says_when_each_call_arrived) {
   const auto one = client();
   one->send(17, "Renew");
