@@ -3,10 +3,12 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 #include <vector>
 
 #include "calib/estimation/settings.hpp"
+#include "calib/ingest/even_stamps.hpp"
 #include "calib/ingest/form.hpp"
 #include "calib/math/linear_solve.hpp"
 #include "calib/math/median.hpp"
@@ -176,19 +178,45 @@ double fine_delay(const measurement::FitData& one, std::size_t from, std::size_t
   return delays[costs.best(0, part.pairs.size()).delay];
 }
 
-/// The first sample after the step: where the interval to the one before is least like the others, of those
-/// near.
-double first_after(const Recording& recording, const ClockStep& rough, double reach) {
-  const auto form = recording.poses.empty() ? ingest::Form::scan : ingest::Form::pose;
-  const std::vector<double> times = stamps_of(recording, form);
+/// Whose stamps show the step: those of the stream whose clock was set.
+enum class Shown { nowhere, in_reference, in_counts };
+
+struct Place {
+  double moment = 0.0;  ///< s, of the first sample of the reference after the step
+  Shown shown = Shown::nowhere;
+};
+
+/// The interval that is least like the others, of those near.
+struct OddInterval {
+  double begin = 0.0, end = 0.0;
+  double unlike = 0.0;  ///< s, by which it is longer, or shorter where shorter ones are looked for
+};
+
+OddInterval odd_interval(const std::vector<double>& times, double about, double reach, bool longer) {
   const double usual = math::median_of(math::differences_of(times));
-  double best = rough.moment, most = 0.0;
+  OddInterval most;
   for (std::size_t k = 1; k < times.size(); ++k) {
-    if (std::abs(times[k] - rough.moment) > reach) continue;
-    const double unlike = (times[k] - times[k - 1] - usual) * (rough.size > 0.0 ? 1.0 : -1.0);
-    if (unlike > most) most = unlike, best = times[k];
+    if (std::abs(times[k] - about) > reach) continue;
+    const double unlike = (times[k] - times[k - 1] - usual) * (longer ? 1.0 : -1.0);
+    if (unlike > most.unlike) most = {times[k - 1], times[k], unlike};
   }
-  return best;
+  return most;
+}
+
+Place place_of(const Recording& recording, const ClockStep& rough) {
+  const double reach = settings::kMomentReach_s + std::abs(rough.size);
+  const double least = settings::kShownPart * std::abs(rough.size);
+  const bool ahead = rough.size > 0.0;
+  const auto form = recording.poses.empty() ? ingest::Form::scan : ingest::Form::pose;
+  const OddInterval of_reference = odd_interval(stamps_of(recording, form), rough.moment, reach, ahead);
+  // Counts that were set ahead leave a gap between the last count before the step and the first after it.
+  if (!ahead) {
+    const OddInterval of_counts =
+        odd_interval(ingest::stamps_of(recording.ticks), rough.moment, reach, /*longer=*/true);
+    if (of_counts.unlike > std::max(least, of_reference.unlike)) return {of_counts.begin, Shown::in_counts};
+  }
+  if (of_reference.unlike > least) return {of_reference.end, Shown::in_reference};
+  return {of_reference.unlike > 0.0 ? of_reference.end : rough.moment, Shown::nowhere};
 }
 
 /// Poses are so good that a few long pairs are enough for lengths; a clock shows in many short ones.
@@ -203,13 +231,47 @@ measurement::FitData in_short_pairs(const measurement::FitData& one, const Recor
   return fine;
 }
 
+/// What cannot be told to lie before the step or after it, s on the clock of the reference: from `begin` on,
+/// before `end`.
+struct Unclear {
+  double begin = 0.0, end = 0.0;
+};
+
+/// Where a clock is set back, what came before the step and what came after it lie in between each other: as
+/// long as the step is. The reference shows where that is when its own clock was set; when that of the counts
+/// was, the moment is known as well as two pairs tell it.
+Unclear unclear_about(const Place& place, double size) {
+  if (place.shown == Shown::in_counts) return {place.moment, place.moment};
+  if (size <= 0.0) return {place.moment + size, place.moment};
+  if (place.shown == Shown::in_reference) return {place.moment, place.moment};
+  return {place.moment - settings::kMomentReach_s - size, place.moment + settings::kMomentReach_s + size};
+}
+
+/// Puts what comes after the step on the clock of what comes before it. Whatever the step, each sample stays
+/// later than the one before it: one that would not is left out.
 template <typename Sample>
-void move(std::vector<Sample>& samples, const ClockStep& step) {
-  // Where a clock is set back, what came before the step and what came after it lie in between each other.
-  const double unclear = step.moment - std::max(0.0, -step.size);
-  std::erase_if(samples, [&](const Sample& s) { return s.t >= unclear && s.t < step.moment; });
+void move(std::vector<Sample>& samples, const Unclear& unclear, double size) {
+  std::erase_if(samples, [&](const Sample& s) { return s.t >= unclear.begin && s.t < unclear.end; });
   for (Sample& sample : samples)
-    if (sample.t >= step.moment) sample.t -= step.size;
+    if (sample.t >= unclear.end) sample.t -= size;
+  double newest = -std::numeric_limits<double>::infinity();
+  std::erase_if(samples,
+                [&](const Sample& s) { return s.t <= std::exchange(newest, std::max(newest, s.t)); });
+}
+
+/// Counts whose own clock was set back: the way through what is unclear is not known.
+void interrupt(std::vector<TickSample>& ticks, const Unclear& unclear, double size) {
+  const double end = unclear.end - size;
+  std::erase_if(ticks, [&](const TickSample& s) { return s.t >= unclear.begin && s.t < end; });
+  for (TickSample& tick : ticks)
+    if (tick.t >= end) ++tick.segment;
+}
+
+void put_on_one_clock(Recording& recording, const Place& place, double size) {
+  const Unclear unclear = unclear_about(place, size);
+  move(recording.scans, unclear, size);
+  move(recording.poses, unclear, size);
+  if (size > 0.0 && place.shown == Shown::nowhere) interrupt(recording.ticks, unclear, size);
 }
 
 }  // namespace
@@ -222,6 +284,9 @@ std::optional<ClockStep> clock_step(const measurement::FitData& one) {
   const Eigen::Vector2d gains = costs.gains(none);
   costs.weigh(gains, costs.noise(none, gains));
   const Split split = settled_split(costs);
+  // What lies at the end of the search may lie anywhere beyond it.
+  for (const std::size_t found : {split.before, split.after})
+    if (found == 0 || found + 1 == delays.size()) return std::nullopt;
   const double size = costs.delay(split.after) - costs.delay(split.before);
   if (std::abs(size) < settings::kClocksApart_s) return std::nullopt;
   if (costs.best(0, costs.pairs()).cost - split.cost < settings::kPlainSplit) return std::nullopt;
@@ -238,13 +303,14 @@ measurement::Dataset without_clock_steps(measurement::Dataset rough) {
     auto step = clock_step(in_short_pairs(rough.data[i], rough.recordings[i]));
     if (!step) continue;
     Recording& recording = repairs.own(i);
-    step->moment = first_after(recording, *step, settings::kMomentReach_s + std::abs(step->size));
-    move(recording.scans, *step);
-    move(recording.poses, *step);
+    const Place place = place_of(recording, *step);
+    put_on_one_clock(recording, place, step->size);
     const std::string whose = recording.poses.empty() ? "scans" : "poses";
+    const std::string when = place.shown == Shown::nowhere ? "about " + math::fixed(place.moment, 0)
+                                                           : math::significant(place.moment, 12);
     recording.repairs.push_back({kRepairedClock, "each side of the step with its own offset",
                                  "stamps of the " + whose + " step by " + math::fixed(step->size, 2) +
-                                     " s at " + math::significant(step->moment, 12) +
+                                     " s at " + when +
                                      " s against those of the counts: one of the two clocks was set"});
   }
   if (!repairs.any()) return rough;

@@ -117,8 +117,7 @@ inline constexpr double kOtherSide_rad = 0.5 * math::kPi;
 /// own delay.
 inline constexpr double kMostClockRate = 0.05;
 
-// --- Clock that is set
-// -----------------------------------------------------------------------------------------
+// --- Clock that is set -----------------------------------------------------------------------------------
 
 /// s, to either side, over which the delays before and after are searched, and step of that. Chosen: larger
 /// steps leave a gap that says the same.
@@ -139,6 +138,9 @@ inline constexpr double kPlainSplit = 60.0, kSplitNotDrift = 30.0;
 inline constexpr int kSplitRounds = 3;
 /// s, about the first pair after the step, in which the step shows in the stamps. Chosen: two pairs.
 inline constexpr double kMomentReach_s = 2.0;
+/// Part of a step, at least, by which the interval of the stamps across it is unlike the others. Chosen:
+/// half; stamps of the other clock do not step.
+inline constexpr double kShownPart = 0.5;
 
 // --- Gyro witness ----------------------------------------------------------------------------------------
 
