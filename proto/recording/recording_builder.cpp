@@ -3,11 +3,14 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdio>
 #include <cstdlib>
 #include <limits>
+#include <set>
 #include <type_traits>
 #include <utility>
 
+#include "proto/recording/clock_set_back.hpp"
 #include "proto/recording/scan_checks.hpp"
 #include "proto/recording/second_writer.hpp"
 #include "proto/recording/stamp_units.hpp"
@@ -21,6 +24,11 @@ constexpr double kReorderWindow = 1.0;  // s, DESIGN 4.2: out of order by up to 
 constexpr double kLeap = 60.0;          // s, a longer step ahead is believed when the next sample confirms it
 constexpr double kLatestTime =
     9e9;  // s; as nanoseconds it still fits 64 bits, and is later than any clock shows
+// Samples of a stream that tells that time went on. Chosen, insensitive.
+constexpr std::size_t kFewestOfWitness = 20;
+// Span of a stream whose clock was put forward over that of the witness: longer ones are recordings of which
+// only one has the witness, one after the other. Chosen: recorders start and end apart.
+constexpr double kLongerThanWitness = 1.5;
 constexpr std::int64_t kLargestCount = std::int64_t{1} << 53;
 constexpr double kNone = -std::numeric_limits<double>::infinity();
 
@@ -62,6 +70,26 @@ bool says_the_same(const PoseSample& a, const PoseSample& b) {
 }
 bool says_the_same(const GyroSample& a, const GyroSample& b) { return a.yaw_rate == b.yaw_rate; }
 bool says_the_same(const Scan& a, const Scan& b) { return a.ranges == b.ranges; }
+
+std::string formatted(const char* format, double value) {
+  std::array<char, 40> text{};
+  std::snprintf(text.data(), text.size(), format, value);
+  return text.data();
+}
+
+template <typename Sample>
+std::vector<double> stamps_in_order(const std::vector<Sample>& samples) {
+  std::vector<double> stamps;
+  stamps.reserve(samples.size());
+  for (const Sample& sample : samples) stamps.push_back(sample.t);
+  return stamps;
+}
+
+/// A stream whose clock was not set.
+struct Witness {
+  std::string many;   ///< what it is called
+  double span = 0.0;  ///< s
+};
 
 std::string number_text(double value) {
   std::string text = std::to_string(value);
@@ -136,13 +164,15 @@ void RecordingBuilder::forget_leap(const char* what, StreamClock& clock, std::ve
   clock.newest = *clock.before_leap;
 }
 
+bool RecordingBuilder::is_stamped(const char* what, double t) {
+  if (sane_time(t)) return true;
+  discard(what, stamp_problem(t));
+  return false;
+}
+
 template <typename Sample>
 bool RecordingBuilder::in_time(const char* what, const Sample& sample, StreamClock& clock,
                                std::vector<Sample>& stream) {
-  if (!sane_time(sample.t)) {
-    discard(what, stamp_problem(sample.t));
-    return false;
-  }
   const bool late = sample.t < clock.newest - kReorderWindow;
   if (late && clock.before_leap && sample.t >= *clock.before_leap - kReorderWindow)
     forget_leap(what, clock, stream);
@@ -154,6 +184,101 @@ bool RecordingBuilder::in_time(const char* what, const Sample& sample, StreamClo
   if (clock.newest != kNone && sample.t > clock.newest + kLeap) clock.before_leap = clock.newest;
   clock.newest = std::max(clock.newest, sample.t);
   return true;
+}
+
+template <typename Sample>
+void RecordingBuilder::drop_late(const char* what, std::vector<Sample>& stream) {
+  StreamClock clock;
+  std::vector<Sample> kept;
+  kept.reserve(stream.size());
+  for (const Sample& sample : stream)
+    if (in_time(what, sample, clock, kept)) kept.push_back(sample);
+  stream = std::move(kept);
+}
+
+/// Each sensor has a clock of its own.
+void RecordingBuilder::drop_late_scans() {
+  std::map<std::string, StreamClock> clocks;
+  std::vector<Scan> kept;
+  kept.reserve(recording_.scans.size());
+  for (Scan& scan : recording_.scans) {
+    if (!in_time("scan", scan, clocks[scan.sensor], kept)) continue;
+    const auto problems = clean_scan(scan);
+    readings_ += scan.ranges.size();
+    discard("beam", "not a number", problems.not_a_number);
+    discard("beam", kOutsideLimits, problems.out_of_limits);
+    kept.push_back(std::move(scan));
+  }
+  recording_.scans = std::move(kept);
+}
+
+/// Streams of one device have one clock.
+enum class RecordingBuilder::Device { wheels, scan, pose, gyro };
+
+template <typename Visit>
+void RecordingBuilder::each_stream(Visit visit) {
+  visit(Device::wheels, "counts", recording_.ticks);
+  visit(Device::wheels, "wheel angles", recording_.wheels);
+  visit(Device::wheels, "wheel speeds", recording_.wheel_speeds);
+  for (auto* halves : {&wheel_halves_, &speed_halves_})
+    for (auto& side : halves->samples) visit(Device::wheels, "wheels", side);
+  visit(Device::wheels, "odometry", recording_.odometry);
+  visit(Device::scan, "scans", recording_.scans);
+  visit(Device::pose, "poses", recording_.poses);
+  visit(Device::gyro, "gyro", recording_.gyro);
+}
+
+/// One device's clock that is set back, while another device tells that time went on. Where the streams of
+/// both go back, files were joined in the wrong order, and of a gyro nothing is known but that it goes with
+/// one of them.
+void RecordingBuilder::put_clocks_forward() {
+  if (!is_in_order_) return;
+  std::set<Device> set_back_devices;
+  std::map<Device, Witness> steady;
+  each_stream([&](Device device, const char* many, const auto& samples) {
+    if (device == Device::gyro || samples.size() < kFewestOfWitness) return;
+    const std::vector<double> stamps = stamps_in_order(samples);
+    const auto [first, last] = std::minmax_element(stamps.begin(), stamps.end());
+    if (!set_back(stamps).empty())
+      set_back_devices.insert(device);
+    else
+      steady.try_emplace(device, Witness{many, *last - *first});
+  });
+  if (set_back_devices.size() != 1) return;
+  const Device device = *set_back_devices.begin();
+  const auto witness =
+      std::find_if(steady.begin(), steady.end(), [&](const auto& one) { return one.first != device; });
+  if (witness == steady.end()) return;
+  bool told = false;
+  each_stream([&](Device of, const char* many, auto& samples) {
+    if (of != device && of != Device::gyro) return;
+    const std::vector<SetBack> steps = set_back(stamps_in_order(samples));
+    const std::vector<double> stamps = without_steps(stamps_in_order(samples), steps);
+    if (steps.empty() || stamps.back() - stamps.front() > kLongerThanWitness * witness->second.span) return;
+    for (std::size_t k = 0; k < stamps.size(); ++k) samples[k].t = stamps[k];
+    for (const SetBack& step : steps)
+      if (!told && of == device)
+        recording_.repairs.push_back(
+            {kRepairedClock, "each side of the step with its own offset",
+             "stamps of the " + std::string(many) + " step by " + formatted("%.2f", -step.by) + " s at " +
+                 formatted("%.12g", stamps[step.first]) + " s against those of the " + witness->second.many +
+                 ": their clock was set back"});
+    told = told || of == device;
+  });
+}
+
+/// Once all samples are there: whether one comes late, or its clock was set back, those after it tell.
+void RecordingBuilder::drop_late_samples() {
+  put_clocks_forward();
+  drop_late("ticks", recording_.ticks);
+  drop_late("wheels", recording_.wheels);
+  drop_late("wheel_speeds", recording_.wheel_speeds);
+  for (auto& side : wheel_halves_.samples) drop_late("wheels", side);
+  for (auto& side : speed_halves_.samples) drop_late("wheel_speeds", side);
+  drop_late("odometry", recording_.odometry);
+  drop_late("pose", recording_.poses);
+  drop_late("gyro", recording_.gyro);
+  drop_late_scans();
 }
 
 void RecordingBuilder::add_robot(RobotDescription robot) {
@@ -172,28 +297,27 @@ void RecordingBuilder::add_robot(RobotDescription robot) {
 void RecordingBuilder::add_ticks(TickSample sample) {
   if (std::abs(sample.left) > kLargestCount || std::abs(sample.right) > kLargestCount)
     discard("ticks", "count beyond 2^53");
-  else if (in_time("ticks", sample, ticks_clock_, recording_.ticks))
+  else if (is_stamped("ticks", sample.t))
     recording_.ticks.push_back(sample);
 }
 
 void RecordingBuilder::add_wheels(WheelSample sample) {
   if (!is_angle(sample.left) || !is_angle(sample.right))
     discard("wheels", kNoAngles);
-  else if (in_time("wheels", sample, wheels_clock_, recording_.wheels))
+  else if (is_stamped("wheels", sample.t))
     recording_.wheels.push_back(sample);
 }
 
 void RecordingBuilder::add_wheel_speeds(WheelSample sample) {
   if (!is_wheel_speed(sample.left) || !is_wheel_speed(sample.right))
     discard("wheel_speeds", kNoSpeeds);
-  else if (in_time("wheel_speeds", sample, wheel_speeds_clock_, recording_.wheel_speeds))
+  else if (is_stamped("wheel_speeds", sample.t))
     recording_.wheel_speeds.push_back(sample);
 }
 
 void RecordingBuilder::add_half(const char* what, Halves& halves, Side side, SideSample sample) {
   const auto at = static_cast<std::size_t>(side);
-  auto& stream = halves.samples.at(at);
-  if (in_time(what, sample, halves.clocks.at(at), stream)) stream.push_back(sample);
+  if (is_stamped(what, sample.t)) halves.samples.at(at).push_back(sample);
 }
 
 void RecordingBuilder::add_wheel(Side side, SideSample sample) {
@@ -209,23 +333,18 @@ void RecordingBuilder::add_wheel_speed(Side side, SideSample sample) {
 void RecordingBuilder::add_odometry(PoseSample sample) {
   if (!is_position(sample.x) || !is_position(sample.y) || !is_angle(sample.yaw))
     discard("odometry", "x, y or yaw missing or impossible");
-  else if (in_time("odometry", sample, odometry_clock_, recording_.odometry))
+  else if (is_stamped("odometry", sample.t))
     recording_.odometry.push_back(sample);
 }
 
 void RecordingBuilder::add_scan(Scan scan) {
-  if (!sane_time(scan.t)) return discard("scan", stamp_problem(scan.t));
+  if (!is_stamped("scan", scan.t)) return;
   if (const char* problem = scan_problem(scan)) return discard("scan", problem);
   // Nothing is measured with them.
   if (!scan.intensities.empty() && scan.intensities.size() != scan.ranges.size()) {
     discard("value", "intensities do not match ranges");
     scan.intensities.clear();
   }
-  if (!in_time("scan", scan, scan_clocks_[scan.sensor], recording_.scans)) return;
-  const auto problems = clean_scan(scan);
-  readings_ += scan.ranges.size();
-  discard("beam", "not a number", problems.not_a_number);
-  discard("beam", kOutsideLimits, problems.out_of_limits);
   if (intensities_ == Intensities::left_out)
     std::vector<float>().swap(scan.intensities);  // clear() would keep them
   recording_.scans.push_back(std::move(scan));
@@ -234,14 +353,14 @@ void RecordingBuilder::add_scan(Scan scan) {
 void RecordingBuilder::add_pose(PoseSample sample) {
   if (!std::isfinite(sample.x) || !std::isfinite(sample.y) || !std::isfinite(sample.yaw))
     discard("pose", "x, y or yaw missing or not a number");
-  else if (in_time("pose", sample, pose_clock_, recording_.poses))
+  else if (is_stamped("pose", sample.t))
     recording_.poses.push_back(sample);
 }
 
 void RecordingBuilder::add_gyro(GyroSample sample) {
   if (!std::isfinite(sample.yaw_rate))
     discard("gyro", "yaw_rate missing or not a number");
-  else if (in_time("gyro", sample, gyro_clock_, recording_.gyro))
+  else if (is_stamped("gyro", sample.t))
     recording_.gyro.push_back(sample);
 }
 
@@ -515,6 +634,7 @@ Result<Recording> RecordingBuilder::finish(const std::string& where, const Robot
 
 Result<Recording> RecordingBuilder::finished(const std::string& where, const RobotDescription* fallback,
                                              RobotNeed need) {
+  drop_late_samples();
   join_halves(MotionSource::wheels, wheel_halves_, recording_.wheels);
   join_halves(MotionSource::wheel_speeds, speed_halves_, recording_.wheel_speeds);
   if (!has_data()) return nothing_usable(where);

@@ -39,6 +39,8 @@ class RecordingBuilder {
                std::optional<double> t = std::nullopt);
   /// Something was taken where the file held several.
   void choose(const std::string& choice) { recording_.choices.push_back(choice); }
+  /// What is added is not in the order in which a recorder had it: where stamps go back, no clock was set.
+  void distrust_order() { is_in_order_ = false; }
   /// Messages of it were taken.
   void take_from(Middleware middleware) { recording_.middleware = middleware; }
   /// Times of what is added count from here.
@@ -71,12 +73,20 @@ class RecordingBuilder {
   /// Wheels that came one by one.
   struct Halves {
     std::array<std::vector<SideSample>, 2> samples;  // by Side
-    std::array<StreamClock, 2> clocks;
     [[nodiscard]] bool any() const { return !samples[0].empty() || !samples[1].empty(); }
   };
 
+  [[nodiscard]] bool is_stamped(const char* what, double t);
   template <typename Sample>
   bool in_time(const char* what, const Sample& sample, StreamClock& clock, std::vector<Sample>& stream);
+  template <typename Sample>
+  void drop_late(const char* what, std::vector<Sample>& stream);
+  void drop_late_scans();
+  void drop_late_samples();
+  enum class Device;
+  template <typename Visit>
+  void each_stream(Visit visit);
+  void put_clocks_forward();
   template <typename Sample>
   void forget_leap(const char* what, StreamClock& clock, std::vector<Sample>& stream);
   void add_half(const char* what, Halves& halves, Side side, SideSample sample);
@@ -100,8 +110,7 @@ class RecordingBuilder {
   Recording recording_;
   Intensities intensities_;
   bool have_robot_ = false;
-  StreamClock ticks_clock_, wheels_clock_, wheel_speeds_clock_, odometry_clock_, pose_clock_, gyro_clock_;
-  std::map<std::string, StreamClock> scan_clocks_;                      // by sensor
+  bool is_in_order_ = true;
   std::map<std::pair<std::string, std::string>, Discarded> discarded_;  // by what and reason
   std::map<std::string, std::size_t> streams_;  // samples of each kind, with those left out
   std::size_t readings_ = 0;                    // of all scans

@@ -14,6 +14,9 @@
 namespace odomcalib::ros {
 namespace {
 
+// ns, by which a recorder of several threads writes messages in another order than it had them. Chosen.
+constexpr std::int64_t kReceivedApart_ns = 100'000'000;
+
 bool has_values(const Topic& topic, const std::vector<Places>& at, bool speeds) {
   return std::any_of(topic.joints.begin(), topic.joints.end(), [&](const auto& one) {
     const Places& place = at[one.value.names];
@@ -209,6 +212,21 @@ Middleware middleware_of(const Chosen& chosen) {
   return is_cdr ? Middleware::ros2 : Middleware::ros1;
 }
 
+template <typename Value>
+bool is_in_order(const std::vector<Stamped<Value>>& messages) {
+  for (std::size_t k = 1; k < messages.size(); ++k)
+    if (messages[k].received_ns < messages[k - 1].received_ns - kReceivedApart_ns) return false;
+  return true;
+}
+
+/// Files that were put together from others hold messages in any order.
+bool is_in_order_of_reception(const Chosen& chosen) {
+  const auto topics = taken_topics(chosen);
+  return std::all_of(topics.begin(), topics.end(), [](const Topic* topic) {
+    return is_in_order(topic->scans) && is_in_order(topic->joints) && is_in_order(topic->poses);
+  });
+}
+
 std::optional<Error> fill_chosen(RecordingBuilder& builder, Chosen& chosen, const std::string& where) {
   const bool no_angles = chosen[Part::wheel_speeds] != nullptr || speeds_only(chosen);
   builder.take_from(middleware_of(chosen));
@@ -216,6 +234,7 @@ std::optional<Error> fill_chosen(RecordingBuilder& builder, Chosen& chosen, cons
   const Clock clock(chosen);
   if (!clock.remark().empty()) builder.choose(clock.remark());
   builder.count_from(clock.start());
+  if (!is_in_order_of_reception(chosen)) builder.distrust_order();
   add_wheels(builder, chosen, clock, no_angles);
   if (const Topic* topic = chosen[Part::odometry]) add_poses(builder, *topic, clock, Part::odometry);
   if (const Topic* topic = chosen[Part::pose]) add_poses(builder, *topic, clock, Part::pose);
