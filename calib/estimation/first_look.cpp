@@ -1,6 +1,5 @@
 #include "calib/estimation/first_look.hpp"
 
-#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 #include <string>
@@ -10,8 +9,8 @@
 #include "calib/classical/closed_form.hpp"
 #include "calib/classical/length_factor.hpp"
 #include "calib/classical/sign_check.hpp"
+#include "calib/estimation/explained_rotation.hpp"
 #include "calib/estimation/settings.hpp"
-#include "calib/math/linear_solve.hpp"
 #include "calib/math/number_text.hpp"
 #include "calib/measurement/reference_motion.hpp"
 #include "calib/wheels/wheel_track.hpp"
@@ -24,55 +23,6 @@ using measurement::ReferenceMotion;
 using wheels::WheelMotion;
 
 std::string number(double value) { return math::significant(value, 3); }
-
-/// From the clock of the reference to that of the counts.
-struct ClockMap {
-  double from = 0.0, to = 0.0, rate = 1.0;
-  [[nodiscard]] double operator()(double t) const { return to + rate * (t - from); }
-};
-
-std::vector<WheelMotion> beside_wheels(const std::vector<ReferenceMotion>& motions,
-                                       const wheels::WheelTrack& track, const ClockMap& clock = {}) {
-  std::vector<WheelMotion> all;
-  if (track.empty()) return all;
-  for (const ReferenceMotion& m : motions) {
-    const double begin = clock(m.begin), end = clock(m.end);
-    if (track.covers(begin, end)) all.push_back(motion_between(track, begin, end, m.motion));
-  }
-  return all;
-}
-
-/// Share of the rotation of the reference that a left + b right explains, a and b by least squares with
-/// bounded residuals; 0 where there are too few motions.
-double explained_rotation(const std::vector<WheelMotion>& motions) {
-  if (motions.size() < settings::kFewestMotions) return 0.0;
-  Eigen::Vector2d gains = Eigen::Vector2d::Zero();
-  double bound = 1e9, misfit = 0.0, all = 0.0;
-  for (int round = 0; round < settings::kGainRounds; ++round) {
-    Eigen::Matrix2d normal = Eigen::Matrix2d::Identity() * 1e-9;
-    Eigen::Vector2d right_side = Eigen::Vector2d::Zero();
-    for (const WheelMotion& m : motions) {
-      const Eigen::Vector2d turned(m.left, m.right);
-      const double residual = std::abs(m.sensor_motion.yaw - gains.dot(turned));
-      const double weight = residual > bound ? bound / residual : 1.0;
-      normal += weight * turned * turned.transpose();
-      right_side += weight * m.sensor_motion.yaw * turned;
-    }
-    gains = math::solve_symmetric(normal, right_side);
-    misfit = all = 0.0;
-    for (const WheelMotion& m : motions) {
-      misfit += std::abs(m.sensor_motion.yaw - gains.dot(Eigen::Vector2d(m.left, m.right)));
-      all += std::abs(m.sensor_motion.yaw);
-    }
-    bound = misfit / static_cast<double>(motions.size());
-  }
-  return all > 0.0 ? std::max(0.0, 1.0 - misfit / all) : 0.0;
-}
-
-/// A mistake put right explains plainly more.
-bool mends(double before, double after) {
-  return after > settings::kAgrees && 1.0 - after < settings::kLeftOver * (1.0 - before);
-}
 
 std::int64_t fall_of(const std::vector<TickSample>& ticks, std::int64_t TickSample::*side) {
   std::int64_t fall = 0;
