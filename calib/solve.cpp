@@ -2,6 +2,7 @@
 
 #include <utility>
 
+#include "calib/estimation/clock_leap.hpp"
 #include "calib/estimation/clock_step.hpp"
 #include "calib/estimation/first_look.hpp"
 #include "calib/estimation/fit.hpp"
@@ -49,7 +50,8 @@ std::optional<Error> contradiction(const ingest::Recordings& recordings, bool sa
 Solution calibrate(measurement::Dataset opened, const terms::Request& request, const SolveOptions& options,
                    const std::vector<std::string>& remarks, const Progress& progress) {
   progress("matching", 0.0);
-  measurement::Dataset rough = estimation::without_clock_steps(measured_roughly(std::move(opened)));
+  measurement::Dataset rough =
+      estimation::without_clock_steps(measured_roughly(estimation::without_clock_leaps(std::move(opened))));
   const auto start = estimation::start_model(rough, request);
   if (!start) return {report::refused(rough, start.error()), {}};
 

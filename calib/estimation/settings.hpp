@@ -141,6 +141,14 @@ inline constexpr double kMomentReach_s = 2.0;
 /// Part of a step, at least, by which the interval of the stamps across it is unlike the others. Chosen:
 /// half; stamps of the other clock do not step.
 inline constexpr double kShownPart = 0.5;
+/// s, and times the usual interval, of a gap that a clock may have made that was set ahead. Chosen: the
+/// search above finds smaller steps, and samples get lost now and then.
+inline constexpr double kLeastLeap_s = 1.5, kLeapIntervals = 5.0;
+/// s, from the begin of such a gap, in which the other stream must go on, and share of its usual samples
+/// then. Chosen: half of what comes in two seconds.
+inline constexpr double kLongestLook_s = 2.0, kGoesOn = 0.5;
+/// Gaps of one recording that are tried. Chosen: more are lost samples; each trial matches a minute of scans.
+inline constexpr std::size_t kMostLeaps = 6;
 
 // --- Gyro witness ----------------------------------------------------------------------------------------
 
