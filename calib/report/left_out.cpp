@@ -6,6 +6,7 @@
 #include <optional>
 #include <string>
 
+#include "calib/report/one_sided.hpp"
 #include "proto/recording/left_out.hpp"
 
 namespace odomcalib::calib::report {
@@ -43,6 +44,11 @@ void add_losses(std::span<const Recording> recordings, std::size_t k, std::vecto
     most.reason = reason_in(recordings, k, most.reason);
     losses.push_back({stream.share, to_text(most, start), is_loss_of_motion(most)});
   }
+  for (Discarded one : one_sided(recording)) {
+    const double share = share_of(one);
+    one.reason = reason_in(recordings, k, one.reason);
+    losses.push_back({share, to_text(one, start)});
+  }
 }
 
 std::string milliseconds(double seconds) { return std::to_string(std::lround(1e3 * seconds)) + " ms"; }
@@ -58,6 +64,7 @@ std::vector<Discarded> left_out(std::span<const Recording> recordings,
   };
   for (std::size_t k = 0; k < recordings.size(); ++k) {
     for (const Discarded& one : left_out_of(recordings[k])) add(k, one);
+    for (const Discarded& one : one_sided(recordings[k])) add(k, one);
     if (k >= pairs.size()) continue;
     std::size_t of = pairs[k].pairs.size();
     for (const auto& [reason, count] : pairs[k].rejected) of += count;

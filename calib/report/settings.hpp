@@ -55,6 +55,10 @@ inline constexpr double kTooManyContradict = 0.25;
 /// or stamps are in whole seconds. The first is twice what a good drive loses; the second, of wheels alone,
 /// is chosen: more is lost than left.
 inline constexpr double kWarnLeftOut = 0.01, kMostLeftOut = 0.5;
+/// Share of the scans without counts, and of what the wheels turned without scans, that is told. Chosen: a
+/// recorder starts one of them a little later; what a robot drives in a fifth of the time may be what a
+/// parameter needs.
+inline constexpr double kOneSided = 0.2;
 
 // --- Figures of what odometry is off by
 // ---------------------------------------------------------------------
