@@ -24,20 +24,44 @@ using wheels::WheelMotion;
 
 std::string number(double value) { return math::significant(value, 3); }
 
-std::int64_t fall_of(const std::vector<TickSample>& ticks, std::int64_t TickSample::*side) {
-  std::int64_t fall = 0;
+/// The longest way that a count goes in one direction from sample to sample.
+/// @param to 1: up, -1: down
+std::int64_t way_of(const std::vector<TickSample>& ticks, std::int64_t TickSample::*side, std::int64_t to) {
+  std::int64_t way = 0;
   for (std::size_t k = 1; k < ticks.size(); ++k)
-    if (ticks[k].segment == ticks[k - 1].segment) fall = std::max(fall, ticks[k - 1].*side - ticks[k].*side);
-  return fall;
+    if (ticks[k].segment == ticks[k - 1].segment)
+      way = std::max(way, to * (ticks[k].*side - ticks[k - 1].*side));
+  return way;
 }
 
-struct Direction {
-  bool left = true, right = true;  ///< the wheel also counts down
+/// Which ways a wheel counts.
+struct Ways {
+  bool up = false, down = false;
+  [[nodiscard]] bool both() const { return up && down; }
+  [[nodiscard]] bool only_down() const { return down && !up; }
+  [[nodiscard]] const char* one_way() const { return only_down() ? "fall" : "grow"; }
 };
 
+struct Direction {
+  Ways left, right;
+};
+
+Ways ways_of(const Recording& recording, std::int64_t TickSample::*side) {
+  return {way_of(recording.ticks, side, 1) > settings::kEdge,
+          way_of(recording.ticks, side, -1) > settings::kEdge};
+}
+
 Direction directions(const Recording& recording) {
-  return {fall_of(recording.ticks, &TickSample::left) > settings::kEdge,
-          fall_of(recording.ticks, &TickSample::right) > settings::kEdge};
+  return {ways_of(recording, &TickSample::left), ways_of(recording, &TickSample::right)};
+}
+
+/// Wheels that only count down as if they counted up: which way that is, is another question.
+std::vector<WheelMotion> counted_up(std::vector<WheelMotion> motions, const Direction& counted) {
+  for (WheelMotion& m : motions) {
+    if (counted.left.only_down()) m.left = -m.left;
+    if (counted.right.only_down()) m.right = -m.right;
+  }
+  return motions;
 }
 
 /// Rotation of the base that nominal lengths make of wheel rotations.
@@ -52,7 +76,7 @@ std::vector<WheelMotion> with_direction(std::vector<WheelMotion> motions, const 
     WheelMotion best = m;
     for (const double left : {1.0, -1.0})
       for (const double right : {1.0, -1.0}) {
-        if ((left < 0.0 && counted.left) || (right < 0.0 && counted.right)) continue;
+        if ((left < 0.0 && counted.left.both()) || (right < 0.0 && counted.right.both())) continue;
         const auto misfit = [&](double l, double r) {
           return std::abs(m.sensor_motion.yaw - nominal_rotation(robot, l, r));
         };
@@ -105,15 +129,13 @@ class Look {
 
   [[nodiscard]] std::optional<Cause> without_direction() const {
     const Direction counted = directions(recording_);
-    if (counted.left && counted.right) return std::nullopt;
-    const auto mended = with_direction(motions_, counted, recording_.robot);
-    const std::size_t against = changed(motions_, mended, recording_.robot);
+    if (counted.left.both() && counted.right.both()) return std::nullopt;
+    const auto given = counted_up(motions_, counted);
+    const auto mended = with_direction(given, counted, recording_.robot);
+    const std::size_t against = changed(given, mended, recording_.robot);
     const auto share = static_cast<double>(against) / std::max(static_cast<double>(motions_.size()), 1.0);
     if (share < settings::kAgainstCounting || against < settings::kFewestAgainstCounting) return std::nullopt;
-    const std::string whose = counted.left    ? "the right wheel"
-                              : counted.right ? "the left wheel"
-                                              : "both wheels";
-    return Cause{"the counts of " + whose + " only ever grow, although the " + reference() +
+    return Cause{one_way(counted) + ", although the " + reference() +
                      " shows that the robot also turned the other way: the encoders count edges without "
                      "their direction",
                  "read both channels of each encoder (quadrature), or give the counts the sign of the speed "
@@ -134,6 +156,16 @@ class Look {
     return Cause{"left and right counts are always the same, although the robot turned by " +
                      std::to_string(std::lround(turned * 180.0 / math::kPi)) + " degrees in all",
                  "check that each count comes from its own encoder"};
+  }
+
+  static std::string one_way(const Direction& counted) {
+    const auto of = [](const std::string& whose, const Ways& ways) {
+      return "the counts of " + whose + " only ever " + ways.one_way();
+    };
+    if (counted.left.both()) return of("the right wheel", counted.right);
+    if (counted.right.both()) return of("the left wheel", counted.left);
+    if (counted.left.only_down() == counted.right.only_down()) return of("both wheels", counted.left);
+    return of("the left wheel", counted.left) + ", those of the right only ever " + counted.right.one_way();
   }
 
   /// Where wheels lead matching astray, the reference alone still shows which way the robot turned.
@@ -271,13 +303,13 @@ Error refusal(const Cause& cause, const Recording& recording) {
 
 }  // namespace
 
-bool never_counts_down(const Recording& recording) {
+bool counts_one_way(const Recording& recording) {
   const Direction counted = directions(recording);
-  return !counted.left || !counted.right;
+  return !counted.left.both() || !counted.right.both();
 }
 
 std::optional<Error> counts_without_direction(const Recording& recording) {
-  if (!can_be_looked_at(recording) || !never_counts_down(recording)) return std::nullopt;
+  if (!can_be_looked_at(recording) || !counts_one_way(recording)) return std::nullopt;
   const auto found = Look(recording).without_direction();
   return found ? std::optional(refusal(*found, recording)) : std::nullopt;
 }

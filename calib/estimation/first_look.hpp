@@ -13,11 +13,11 @@ namespace odomcalib::calib::estimation {
 /// nullopt when none does, or nothing is wrong. Takes about as long as a first match of all scans.
 std::optional<Error> first_look(const Recording& recording);
 
-/// Whether the counts of a wheel never fall, although it turned: the sign of encoders without a direction.
-bool never_counts_down(const Recording& recording);
+/// Whether the counts of a wheel never fall, or never grow: the sign of encoders without a direction.
+bool counts_one_way(const Recording& recording);
 
 /// The error that counts have no direction, where the reference turns as counts with one would have it;
-/// nullopt where the robot only drove ahead. Matches scans only if a wheel never counts down.
+/// nullopt where the robot only drove ahead. Matches scans only if a wheel counts one way only.
 std::optional<Error> counts_without_direction(const Recording& recording);
 
 }  // namespace odomcalib::calib::estimation

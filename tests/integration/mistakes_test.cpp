@@ -208,6 +208,11 @@ Edit poses(const std::function<void(PoseSample&)>& change) {
   };
 }
 
+/// From the middle of the drive on.
+Edit clock_of_counts(double ahead) {
+  return stamps([=](double t) { return t > 75.0 ? t + ahead : t; }, kTicks);
+}
+
 const std::vector<Mistake>& mistakes() {
   static const std::vector<Mistake> all = {
       // Time stamps.
@@ -304,6 +309,11 @@ const std::vector<Mistake>& mistakes() {
        "both wheels only ever grow", "quadrature"},
       {"left_counts_without_direction", counted([](auto l, auto r) { return std::pair(std::abs(l), r); }),
        "the left wheel only ever grow", "quadrature"},
+      {"counts_that_only_fall", counted([](auto l, auto r) { return std::pair(-std::abs(l), -std::abs(r)); }),
+       "both wheels only ever fall", "quadrature"},
+      {"counts_that_grow_and_fall",
+       counted([](auto l, auto r) { return std::pair(std::abs(l), -std::abs(r)); }),
+       "the left wheel only ever grow, those of the right only ever fall", "quadrature"},
       {"one_encoder_twice", counted([](auto l, auto) { return std::pair(l, l); }), "always the same",
        "its own encoder"},
       {"left_counts_twice", counted([](auto l, auto r) { return std::pair(2 * l, r); }),
@@ -311,6 +321,13 @@ const std::vector<Mistake>& mistakes() {
       {"counts_per_sample", per_sample, "since the sample before", "cumulative"},
       {"left_encoder_dead", counted([](auto, auto r) { return std::pair(std::int64_t{0}, r); }),
        "counts of the left wheel never change", "cable"},
+      // Clocks that are set while recording.
+      {"clock_of_counts_set_back", clock_of_counts(-0.4), "counts step by -0\\.40 s at 75", "let nothing set",
+       cli::kDone},
+      {"clock_of_counts_set_back_by_seconds", clock_of_counts(-3.0), "counts step by -3\\.00 s at 75",
+       "let nothing set", cli::kDone},
+      {"clock_of_counts_set_ahead_by_a_minute", clock_of_counts(60.0), "counts step by 60\\.00 s at 7[45]",
+       "let nothing set", cli::kDone},
       // Poses as reference.
       {"poses_north_east_down", poses([](PoseSample& p) { p.y = -p.y, p.yaw = -p.yaw; }), "north-east-down",
        "put it right", cli::kRefused, true},
