@@ -42,7 +42,8 @@ std::optional<Error> contradiction(const ingest::Recordings& recordings, bool sa
   if (auto error = ingest::two_robots(recordings.view(), same_robot)) return error;
   if (auto error = ingest::two_sensors(recordings.view())) return error;
   for (const Recording& recording : recordings.view())
-    if (auto error = estimation::counts_without_direction(recording)) return error;
+    for (const auto look : {estimation::counts_without_direction, estimation::odometry_beside_axle})
+      if (auto error = look(recording)) return error;
   return std::nullopt;
 }
 

@@ -104,14 +104,31 @@ std::vector<Explanation> explanations(std::span<const wheels::WheelMotion> motio
   return best;
 }
 
-std::string text_of(const Explanation& one, bool of_base) {
+/// Counts that were made of odometry are exchanged where it turns the other way, and both inverted where it
+/// goes the other way in turning the same.
+std::vector<std::string> frames_of(const Wires& wires) {
+  const bool turns = wires.exchanged != wires.left_inverted;
+  if (wires.left_inverted && turns) return {"x and yaw of the odometry run the other way"};
+  if (wires.left_inverted) return {"the odometry looks backwards: its frame is turned by half a turn"};
+  if (!turns) return {};
+  return {"y and yaw of the odometry run the other way, as in a frame with z down (north-east-down)"};
+}
+
+std::vector<std::string> wires_of(const Wires& wires) {
   std::vector<std::string> parts;
-  if (one.wires.exchanged) parts.emplace_back("the left and right counts are exchanged");
-  if (one.wires.left_inverted && one.wires.right_inverted)
+  if (wires.exchanged) parts.emplace_back("the left and right counts are exchanged");
+  if (wires.left_inverted && wires.right_inverted)
     parts.emplace_back("both wheels count backwards");
-  else if (one.wires.left_inverted || one.wires.right_inverted)
-    parts.emplace_back("the " + std::string(one.wires.left_inverted ? "left" : "right") +
+  else if (wires.left_inverted || wires.right_inverted)
+    parts.emplace_back("the " + std::string(wires.left_inverted ? "left" : "right") +
                        " wheel counts backwards");
+  return parts;
+}
+
+std::string text_of(const Explanation& one, bool of_base, MotionSource motion) {
+  const bool of_frame =
+      motion == MotionSource::odometry && one.wires.left_inverted == one.wires.right_inverted;
+  std::vector<std::string> parts = of_frame ? frames_of(one.wires) : wires_of(one.wires);
   if (one.wires.lidar_mirrored)
     parts.emplace_back(of_base ? "y and yaw of the reference poses run the other way, as in a frame with z "
                                  "down (north-east-down)"
@@ -154,7 +171,7 @@ bool other_signs_explain_more(std::span<const wheels::WheelMotion> motions) {
 }  // namespace
 
 std::optional<Error> wrong_signs(std::span<const wheels::WheelMotion> motions, const RobotDescription& robot,
-                                 bool of_base) {
+                                 bool of_base, MotionSource motion) {
   if (motions.size() < settings::kFewestForSigns || !other_signs_explain_more(motions)) return std::nullopt;
   // With wires as they should be nothing has to be put right but the heading, which is estimated.
   if (explanation(motions, Wires{}, robot, of_base)) return std::nullopt;
@@ -163,7 +180,7 @@ std::optional<Error> wrong_signs(std::span<const wheels::WheelMotion> motions, c
   std::string what =
       "wheels and " + std::string(of_base ? "reference" : "lidar") + " contradict each other: ";
   for (const Explanation& one : found)
-    what += (&one == &found.front() ? "" : ", or ") + text_of(one, of_base);
+    what += (&one == &found.front() ? "" : ", or ") + text_of(one, of_base, motion);
   return Error{ErrorCode::refused, what, "",
                "put it right on the robot or in its description and record again"};
 }
@@ -199,9 +216,9 @@ std::optional<Error> standing_reference(std::span<const wheels::WheelMotion> mot
 }  // namespace
 
 std::optional<Error> check_signs(std::span<const wheels::WheelMotion> motions, const RobotDescription& robot,
-                                 bool of_base) {
+                                 bool of_base, MotionSource motion) {
   if (auto error = standing_reference(motions, robot)) return error;
-  return wrong_signs(motions, robot, of_base);
+  return wrong_signs(motions, robot, of_base, motion);
 }
 
 }  // namespace odomcalib::calib::classical

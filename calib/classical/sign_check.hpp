@@ -7,6 +7,7 @@
 
 #include "calib/wheels/wheel_motion.hpp"
 #include "proto/measurements.hpp"
+#include "proto/recording/recording.hpp"
 #include "proto/result.hpp"
 
 namespace odomcalib::calib::classical {
@@ -18,11 +19,12 @@ namespace odomcalib::calib::classical {
 /// does not determine the signs.
 /// @param motions with any delay of the reference taken out
 /// @param of_base the reference is the base itself, not a lidar
+/// @param motion what told the motion of the wheels: odometry has no wires, but a frame
 std::optional<Error> check_signs(std::span<const wheels::WheelMotion> motions, const RobotDescription& robot,
-                                 bool of_base);
+                                 bool of_base, MotionSource motion = MotionSource::ticks);
 
 /// The second of these alone.
 std::optional<Error> wrong_signs(std::span<const wheels::WheelMotion> motions, const RobotDescription& robot,
-                                 bool of_base);
+                                 bool of_base, MotionSource motion = MotionSource::ticks);
 
 }  // namespace odomcalib::calib::classical

@@ -11,6 +11,7 @@
 #include "calib/classical/sign_check.hpp"
 #include "calib/estimation/explained_rotation.hpp"
 #include "calib/estimation/settings.hpp"
+#include "calib/ingest/frames.hpp"
 #include "calib/math/number_text.hpp"
 #include "calib/measurement/reference_motion.hpp"
 #include "calib/wheels/wheel_track.hpp"
@@ -127,6 +128,24 @@ class Look {
     return signs();
   }
 
+  /// The lidar confirms what turns on the spot show of the frame of the odometry.
+  [[nodiscard]] std::optional<Cause> frame_beside_axle() const {
+    const auto left = ingest::beside_axle(recording_);
+    if (!left || !recording_.poses.empty() || !recording_.robot.lidar_pose) return std::nullopt;
+    const auto fit = classical::solve_closed_form(motions_);
+    if (!fit) return std::nullopt;
+    const double beside = fit.value().parameters.mount.y - (*recording_.robot.lidar_pose)[1];
+    if (std::abs(beside + *left) > settings::kSameBeside * std::abs(*left)) return std::nullopt;
+    const std::string distance = math::fixed(std::abs(*left), 3);
+    const std::string side = *left > 0.0 ? "left" : "right";
+    return Cause{
+        "the odometry is that of a frame " + distance + " m to the " + side +
+            " of the middle of the axle: where the robot turns on the spot it goes ahead and back by "
+            "so much for each radian, and the lidar comes out " +
+            math::fixed(std::abs(beside), 3) + " m beside where lidar_pose has it",
+        "record the frame in the middle of the axle (base_link), or, if it is, correct y of lidar_pose"};
+  }
+
   [[nodiscard]] std::optional<Cause> without_direction() const {
     const Direction counted = directions(recording_);
     if (counted.left.both() && counted.right.both()) return std::nullopt;
@@ -170,7 +189,8 @@ class Look {
 
   /// Where wheels lead matching astray, the reference alone still shows which way the robot turned.
   [[nodiscard]] std::optional<Cause> signs() const {
-    const auto error = classical::wrong_signs(motions_, recording_.robot, !recording_.poses.empty());
+    const auto error =
+        classical::wrong_signs(motions_, recording_.robot, !recording_.poses.empty(), recording_.motion);
     return error ? std::optional(Cause{error->what, error->remedy}) : std::nullopt;
   }
 
@@ -311,6 +331,12 @@ bool counts_one_way(const Recording& recording) {
 std::optional<Error> counts_without_direction(const Recording& recording) {
   if (!can_be_looked_at(recording) || !counts_one_way(recording)) return std::nullopt;
   const auto found = Look(recording).without_direction();
+  return found ? std::optional(refusal(*found, recording)) : std::nullopt;
+}
+
+std::optional<Error> odometry_beside_axle(const Recording& recording) {
+  if (!can_be_looked_at(recording) || !ingest::beside_axle(recording)) return std::nullopt;
+  const auto found = Look(recording).frame_beside_axle();
   return found ? std::optional(refusal(*found, recording)) : std::nullopt;
 }
 

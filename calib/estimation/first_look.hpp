@@ -20,4 +20,8 @@ bool counts_one_way(const Recording& recording);
 /// nullopt where the robot only drove ahead. Matches scans only if a wheel counts one way only.
 std::optional<Error> counts_without_direction(const Recording& recording);
 
+/// The error that odometry is that of a frame beside the axle, where the lidar comes out as far beside its
+/// nominal place as turns on the spot say. Matches scans only if these say so.
+std::optional<Error> odometry_beside_axle(const Recording& recording);
+
 }  // namespace odomcalib::calib::estimation

@@ -23,6 +23,9 @@ inline constexpr std::size_t kFewestMotions = 20;
 inline constexpr double kContradicts = 0.75, kAgrees = 0.9;
 /// Share of unexplained rotation that a mistake put right may leave. Chosen: no small gain names a mistake.
 inline constexpr double kLeftOver = 0.4;
+/// Part of the distance from the axle by which turns on the spot and the lidar may differ. Chosen: the closed
+/// form knows the lidar's y to some mm, its nominal y is measured with a tape.
+inline constexpr double kSameBeside = 0.3;
 /// s, step and reach of the search for clocks that were set apart. Chosen: people start recorders within a
 /// minute of each other.
 inline constexpr double kClockStep_s = 0.1, kClockReach_s = 60.0;

@@ -102,11 +102,13 @@ std::optional<Error> check_signs(const measurement::Dataset& rough, double delay
   const RobotDescription& robot = rough.recordings.front().robot;
   const bool of_base = rough.reference_is_base();
   for (std::size_t i = 0; data.size() > 1 && i < data.size(); ++i)
-    if (auto error = classical::check_signs(whole_wheel_motions(data.subspan(i, 1), delay), robot, of_base)) {
+    if (auto error = classical::check_signs(whole_wheel_motions(data.subspan(i, 1), delay), robot, of_base,
+                                            rough.recordings[i].motion)) {
       error->where = rough.recordings[i].name;
       return error;
     }
-  return classical::check_signs(whole_wheel_motions(data, delay), robot, of_base);
+  return classical::check_signs(whole_wheel_motions(data, delay), robot, of_base,
+                                rough.recordings.front().motion);
 }
 
 }  // namespace

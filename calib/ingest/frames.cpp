@@ -1,9 +1,11 @@
 #include "calib/ingest/frames.hpp"
 
 #include <Eigen/Dense>
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <complex>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -68,6 +70,36 @@ std::optional<Sideways> sideways_of(const std::vector<Step>& steps) {
   const double variance = squares / (static_cast<double>(steps.size()) - 3.0);
   const Eigen::Vector3d column = math::solve_symmetric(normal, Eigen::Vector3d(1.0, 0.0, 0.0));
   return Sideways{aside / way, fit(0), std::sqrt(variance * std::max(column(0), 0.0)), left / way};
+}
+
+/// Where the robot turns about, beside the frame of its odometry.
+struct TurnedAbout {
+  double left = 0.0;   ///< m, to the left of the frame: middle of the shortest interval that holds a part of
+                       ///< the turns
+  double width = 0.0;  ///< m, of that interval
+};
+
+/// As the shorth (Andrews et al., Robust Estimates of Location, 1972), of a smaller part: turns on the spot
+/// agree, arcs do not.
+/// @param places m, as many as make a part
+TurnedAbout where_most_are(std::vector<double> places) {
+  std::sort(places.begin(), places.end());
+  const auto part = static_cast<std::size_t>(settings::kTurnsTogether * static_cast<double>(places.size()));
+  TurnedAbout best{0.0, std::numeric_limits<double>::infinity()};
+  for (std::size_t k = 0; k + part < places.size(); ++k)
+    if (const double width = places[k + part] - places[k]; width < best.width)
+      best = {0.5 * (places[k] + places[k + part]), width};
+  return best;
+}
+
+/// Of the turns to one side whose centre lies not far from the wheels.
+/// @param to 1 to the left, -1 to the right
+std::vector<double> centres_of_turns(const std::vector<Step>& steps, double to, double farthest) {
+  std::vector<double> centres;
+  for (const Step& step : steps)
+    if (step.turn * to > settings::kTurnOfStep_rad && std::abs(step.ahead / step.turn) < farthest)
+      centres.push_back(step.ahead / step.turn);
+  return centres;
 }
 
 Error wrong(const Recording& recording, double share, const std::string& what, const std::string& remedy) {
@@ -209,6 +241,24 @@ std::optional<Error> wrong_headings(const std::vector<PoseSample>& poses, const 
 }
 
 }  // namespace
+
+std::optional<double> beside_axle(const Recording& recording) {
+  const double track = recording.robot.track_width;
+  if (recording.motion != MotionSource::odometry || recording.odometry.empty() || !(track > 0.0))
+    return std::nullopt;
+  const std::vector<Step> steps = steps_of(recording.odometry);
+  std::array<TurnedAbout, 2> sides;
+  for (std::size_t k = 0; k < sides.size(); ++k) {
+    const auto centres = centres_of_turns(steps, k == 0 ? 1.0 : -1.0, settings::kNearWheels * track);
+    if (centres.size() < settings::kFewestTurnSteps) return std::nullopt;
+    sides.at(k) = where_most_are(centres);
+    if (sides.at(k).width > settings::kTurnsAgree * track) return std::nullopt;
+  }
+  // An arc that is driven ahead lies to the left of the robot in turns to the left, else to the right.
+  if (std::abs(sides[0].left - sides[1].left) > settings::kTurnsAgree * track) return std::nullopt;
+  const double left = -0.5 * (sides[0].left + sides[1].left);
+  return std::abs(left) > settings::kBesideAxle * track ? std::optional(left) : std::nullopt;
+}
 
 std::optional<Error> wrong_odometry_frame(const Recording& recording) {
   if (recording.motion != MotionSource::odometry || recording.odometry.empty()) return std::nullopt;

@@ -23,4 +23,11 @@ std::optional<Error> wrong_pose_frame(const Recording& recording);
 /// The same of odometry that told the motion of the wheels.
 std::optional<Error> wrong_odometry_heading(const Recording& recording);
 
+/// m, to the left of the middle of the axle, of a frame that goes ahead by so much for each radian of a turn
+/// to the right, and back for each of one to the left: as a frame beside the axle does while the robot turns
+/// on the spot. A robot that always turns about a point beside its middle does so too, so that another
+/// witness has to confirm it. nullopt where turns both ways do not agree, of a distance that is small beside
+/// the track, and of a recording whose wheel motion is not from odometry.
+std::optional<double> beside_axle(const Recording& recording);
+
 }  // namespace odomcalib::calib::ingest

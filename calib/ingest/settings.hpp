@@ -153,6 +153,16 @@ inline constexpr double kPlainlyTurned = 5.0;
 /// 0.005 in the same recordings; 0.1 with the yaw of a filter.
 inline constexpr double kAsideUnexplained = 0.03;
 
+/// rad, of a step that is part of a turn, and steps of turns to either side. Chosen: half a turn.
+inline constexpr double kTurnOfStep_rad = 0.02;
+inline constexpr std::size_t kFewestTurnSteps = 30;
+/// Share of these that are turns on the spot, at least. Chosen: most drives have more.
+inline constexpr double kTurnsTogether = 0.25;
+/// Of the track: how far from the frame the centre of a turn on the spot lies at most; how far centres may
+/// lie apart; how far beside the axle a frame is told. Derived: half a track is a wheel; chosen: odometry
+/// turns on the spot about one point, and wheels that are driven unequally by a tenth shift it by 0.025.
+inline constexpr double kNearWheels = 0.6, kTurnsAgree = 0.03, kBesideAxle = 0.05;
+
 // --- Even stamps -----------------------------------------------------------------------------------------
 
 /// Stamps from which a period is looked for. Chosen, insensitive.

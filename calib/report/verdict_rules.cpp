@@ -347,6 +347,14 @@ Objections lidar_yaw(const Calibration& calibration, const VerdictEvidence& evid
   if (!yaw || !calibration.robot.lidar_pose || names_no_cause(evidence)) return {};
   const double apart = math::wrap_angle(*yaw - (*calibration.robot.lidar_pose)[2]);
   if (!(std::abs(apart) > classical::settings::kFarYaw_rad)) return {};
+  // Of odometry that looks backwards the sides are exchanged: what it calls left is the right wheel.
+  if (evidence.motion == MotionSource::odometry &&
+      std::abs(apart) > math::kPi - classical::settings::kFarYaw_rad)
+    return {refusal("the odometry looks backwards by what lidar_pose says, " +
+                        math::fixed(std::abs(apart) * 180.0 / math::kPi, 0) +
+                        " degrees: its frame is turned by half a turn, so that left and right are exchanged, "
+                        "or yaw of lidar_pose is off by as much; turn the frame, or correct lidar_pose",
+                    "turn the frame of the odometry by half a turn, or correct lidar_pose, and solve again")};
   return {warning("lidar_yaw differs from its nominal value by " + math::fixed(apart * 180.0 / math::kPi, 0) +
                   " degrees" + ": correct lidar_pose, or check which end of the robot counts forward")};
 }

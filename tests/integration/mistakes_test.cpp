@@ -213,6 +213,29 @@ Edit clock_of_counts(double ahead) {
   return stamps([=](double t) { return t > 75.0 ? t + ahead : t; }, kTicks);
 }
 
+/// The odometry that a robot computes from its counts, in the place of these.
+Edit odometry(const std::function<void(PoseSample&)>& change) {
+  return [=](Recording& r) {
+    PoseSample pose;
+    for (std::size_t k = 0; k < r.ticks.size(); ++k) {
+      const double turns = kPi / r.robot.ticks_per_rev;
+      const double left = k == 0 ? 0.0 : static_cast<double>(r.ticks[k].left - r.ticks[k - 1].left);
+      const double right = k == 0 ? 0.0 : static_cast<double>(r.ticks[k].right - r.ticks[k - 1].right);
+      const double left_way = turns * r.robot.left_wheel_diameter * left;
+      const double right_way = turns * r.robot.right_wheel_diameter * right;
+      const double turn = (right_way - left_way) / r.robot.track_width;
+      pose.t = r.ticks[k].t;
+      pose.x += 0.5 * (left_way + right_way) * std::cos(pose.yaw + 0.5 * turn);
+      pose.y += 0.5 * (left_way + right_way) * std::sin(pose.yaw + 0.5 * turn);
+      pose.yaw += turn;
+      r.odometry.push_back(pose);
+      change(r.odometry.back());
+    }
+    r.motion = MotionSource::odometry;
+    r.ticks.clear();
+  };
+}
+
 const std::vector<Mistake>& mistakes() {
   static const std::vector<Mistake> all = {
       // Time stamps.
@@ -321,6 +344,17 @@ const std::vector<Mistake>& mistakes() {
       {"counts_per_sample", per_sample, "since the sample before", "cumulative"},
       {"left_encoder_dead", counted([](auto, auto r) { return std::pair(std::int64_t{0}, r); }),
        "counts of the left wheel never change", "cable"},
+      // Odometry in the place of counts.
+      {"odometry_beside_the_axle",
+       odometry([](PoseSample& p) { p.x -= 0.1 * std::sin(p.yaw), p.y += 0.1 * std::cos(p.yaw); }),
+       "a frame 0\\.(099|10[01]) m to the left of the middle of the axle", "base_link"},
+      {"odometry_on_the_other_side_of_the_axle",
+       odometry([](PoseSample& p) { p.x += 0.06 * std::sin(p.yaw), p.y -= 0.06 * std::cos(p.yaw); }),
+       "a frame 0\\.0(59|6[01]) m to the right of the middle of the axle", "base_link"},
+      {"odometry_north_east_down", odometry([](PoseSample& p) { p.y = -p.y, p.yaw = -p.yaw; }),
+       "y and yaw of the odometry run the other way.*north-east-down", "put it right"},
+      {"odometry_that_looks_backwards", odometry([](PoseSample& p) { p.yaw += kPi; }),
+       "the odometry looks backwards", "correct lidar_pose"},
       // Clocks that are set while recording.
       {"clock_of_counts_set_back", clock_of_counts(-0.4), "counts step by -0\\.40 s at 75", "let nothing set",
        cli::kDone},
@@ -407,6 +441,16 @@ TEST(MistakesNone, of_a_sound_recording_are_told) {
     EXPECT_EQ(result.verdict, Verdict::accepted) << result.reasons.size();
     for (const std::string& reason : result.reasons) ADD_FAILURE() << reason;
   }
+}
+
+TEST(MistakesNone, of_sound_odometry_are_told) {
+  Recording recording = plain_run().recording;
+  odometry([](PoseSample&) {})(recording);
+  const Folder folder;
+  ASSERT_TRUE(write_recording_jsonl(recording, folder.file("drive.jsonl")).ok());
+  const Outcome outcome = solved(folder.file("drive.jsonl"));
+  EXPECT_EQ(outcome.status, cli::kDone);
+  EXPECT_EQ(outcome.text, "");
 }
 
 // Beams in whatever order a driver lists them give the same calibration, to the last digit.
