@@ -1,7 +1,9 @@
 #include "calib/estimation/first_look.hpp"
 
+#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
+#include <complex>
 #include <string>
 #include <utility>
 #include <vector>
@@ -12,6 +14,7 @@
 #include "calib/estimation/explained_rotation.hpp"
 #include "calib/estimation/settings.hpp"
 #include "calib/ingest/frames.hpp"
+#include "calib/math/linear_solve.hpp"
 #include "calib/math/number_text.hpp"
 #include "calib/measurement/reference_motion.hpp"
 #include "calib/wheels/wheel_track.hpp"
@@ -103,6 +106,43 @@ std::size_t changed(const std::vector<WheelMotion>& before, const std::vector<Wh
   return count;
 }
 
+/// Direction in the frame of the reference, rad, in which it mostly goes, ahead or back: the mean of axial
+/// directions (Mardia and Jupp, Directional Statistics, 2000, 9.2.1).
+double main_direction(const std::vector<ReferenceMotion>& motions) {
+  std::complex<double> sum = 0.0;
+  for (const ReferenceMotion& m : motions) {
+    const std::complex<double> way(m.motion.x, m.motion.y);
+    if (std::abs(m.motion.yaw) < settings::kContradicting_rad && std::abs(way) > 0.0)
+      sum += way * way / std::abs(way);
+  }
+  return 0.5 * std::arg(sum);
+}
+
+/// Share of the way that goes across that direction and that neither a reference that sits elsewhere nor one
+/// that looks elsewhere explains.
+double sideways_share(const std::vector<ReferenceMotion>& motions) {
+  const double main = main_direction(motions);
+  Eigen::Matrix2d normal = Eigen::Matrix2d::Identity() * 1e-9;
+  Eigen::Vector2d right_side = Eigen::Vector2d::Zero();
+  std::vector<std::pair<Eigen::Vector2d, double>> steps;  // ahead and turn; aside
+  double way = 0.0, left = 0.0;
+  for (const ReferenceMotion& m : motions) {
+    const double length = std::hypot(m.motion.x, m.motion.y);
+    if (length < settings::kPlainWay_m) continue;
+    // The middle of an arc has the direction of its chord.
+    const double angle = std::atan2(m.motion.y, m.motion.x) - main - 0.5 * m.motion.yaw;
+    const Eigen::Vector2d terms(length * std::cos(angle), m.motion.yaw);
+    normal += terms * terms.transpose();
+    right_side += length * std::sin(angle) * terms;
+    steps.emplace_back(terms, length * std::sin(angle));
+    way += length;
+  }
+  if (steps.size() < settings::kFewestMotions) return 0.0;
+  const Eigen::Vector2d fit = math::solve_symmetric(normal, right_side);
+  for (const auto& [terms, aside] : steps) left += std::abs(aside - fit.dot(terms));
+  return left / way;
+}
+
 /// A trial of one mistake: what would be seen without it.
 class Look {
  public:
@@ -125,7 +165,8 @@ class Look {
     if (auto found = stretched_angles()) return found;
     if (auto found = length_factor(motions_)) return found;
     if (auto found = length_of_odometry()) return found;
-    return signs();
+    if (auto found = signs()) return found;
+    return strafing();
   }
 
   /// The lidar confirms what turns on the spot show of the frame of the odometry.
@@ -185,6 +226,17 @@ class Look {
     if (counted.right.both()) return of("the left wheel", counted.left);
     if (counted.left.only_down() == counted.right.only_down()) return of("both wheels", counted.left);
     return of("the left wheel", counted.left) + ", those of the right only ever " + counted.right.one_way();
+  }
+
+  /// Two wheels move no point of the robot across its heading but by the turn.
+  [[nodiscard]] std::optional<Cause> strafing() const {
+    const double share = sideways_share(seen_.motions);
+    if (share < settings::kStrafes) return std::nullopt;
+    return Cause{
+        "the " + reference() + " sees the robot go sideways over " + math::significant(100.0 * share, 2) +
+            " % of its way, which two wheels cannot: wheels that roll sideways, too (mecanum, omni), "
+            "or a robot that slides",
+        "record a drive without sideways motion: straight lines, arcs and turns on the spot"};
   }
 
   /// Where wheels lead matching astray, the reference alone still shows which way the robot turned.

@@ -26,6 +26,9 @@ inline constexpr double kLeftOver = 0.4;
 /// Part of the distance from the axle by which turns on the spot and the lidar may differ. Chosen: the closed
 /// form knows the lidar's y to some mm, its nominal y is measured with a tape.
 inline constexpr double kSameBeside = 0.3;
+/// m, of a motion of half a second whose direction is known, and share of the way that goes sideways of a
+/// robot that strafes. Chosen: matches are good to some mm; wheels slip by a few per cent.
+inline constexpr double kPlainWay_m = 0.02, kStrafes = 0.1;
 /// s, step and reach of the search for clocks that were set apart. Chosen: people start recorders within a
 /// minute of each other.
 inline constexpr double kClockStep_s = 0.1, kClockReach_s = 60.0;

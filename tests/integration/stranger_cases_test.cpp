@@ -76,6 +76,8 @@ const std::vector<Stranger>& strangers() {
        true},
       {"ticks_in_whole_seconds", "wheel-stamps-whole-seconds/ticks.jsonl.gz", "carry the same time stamp",
        true},
+      {"wheels_that_roll_sideways", "four-wheels-and-mecanum/strafing.mcap.gz", "sees the robot go sideways",
+       true},
       {"four_wheels", "four-wheels-and-mecanum/no_strafing.mcap.gz",
        "the rear pair is taken; the front pair: --topic wheels=/joint_states:front_left_wheel_joint"}};
   return all;
