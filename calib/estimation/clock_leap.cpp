@@ -14,7 +14,7 @@
 namespace odomcalib::calib::estimation {
 namespace {
 
-/// Of one of the two clocks.
+/// A step ahead of one of the two clocks.
 struct Leap {
   bool of_counts = false;
   double begin = 0.0;  ///< s, of the last sample before it

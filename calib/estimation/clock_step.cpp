@@ -178,7 +178,7 @@ double fine_delay(const measurement::FitData& one, std::size_t from, std::size_t
   return delays[costs.best(0, part.pairs.size()).delay];
 }
 
-/// Whose stamps show the step: those of the stream whose clock was set.
+/// The stream whose stamps show the step: its clock was set.
 enum class Shown { nowhere, in_reference, in_counts };
 
 struct Place {
@@ -231,8 +231,8 @@ measurement::FitData in_short_pairs(const measurement::FitData& one, const Recor
   return fine;
 }
 
-/// What cannot be told to lie before the step or after it, s on the clock of the reference: from `begin` on,
-/// before `end`.
+/// The time that cannot be told to lie before the step or after it, s on the clock of the reference: from
+/// `begin` on, before `end`.
 struct Unclear {
   double begin = 0.0, end = 0.0;
 };
@@ -284,7 +284,7 @@ std::optional<ClockStep> clock_step(const measurement::FitData& one) {
   const Eigen::Vector2d gains = costs.gains(none);
   costs.weigh(gains, costs.noise(none, gains));
   const Split split = settled_split(costs);
-  // What lies at the end of the search may lie anywhere beyond it.
+  // A delay at the end of the search may lie anywhere beyond it.
   for (const std::size_t found : {split.before, split.after})
     if (found == 0 || found + 1 == delays.size()) return std::nullopt;
   const double size = costs.delay(split.after) - costs.delay(split.before);

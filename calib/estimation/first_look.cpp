@@ -38,7 +38,7 @@ std::int64_t way_of(const std::vector<TickSample>& ticks, std::int64_t TickSampl
   return way;
 }
 
-/// Which ways a wheel counts.
+/// The ways in which a wheel counts.
 struct Ways {
   bool up = false, down = false;
   [[nodiscard]] bool both() const { return up && down; }

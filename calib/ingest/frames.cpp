@@ -92,7 +92,7 @@ TurnedAbout where_most_are(std::vector<double> places) {
   return best;
 }
 
-/// Of the turns to one side whose centre lies not far from the wheels.
+/// Centres of the turns to one side, of those that lie not far from the wheels.
 /// @param to 1 to the left, -1 to the right
 std::vector<double> centres_of_turns(const std::vector<Step>& steps, double to, double farthest) {
   std::vector<double> centres;

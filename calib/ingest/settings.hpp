@@ -158,8 +158,8 @@ inline constexpr double kTurnOfStep_rad = 0.02;
 inline constexpr std::size_t kFewestTurnSteps = 30;
 /// Share of these that are turns on the spot, at least. Chosen: most drives have more.
 inline constexpr double kTurnsTogether = 0.25;
-/// Of the track: how far from the frame the centre of a turn on the spot lies at most; how far centres may
-/// lie apart; how far beside the axle a frame is told. Derived: half a track is a wheel; chosen: odometry
+/// Shares of the track: how far from the frame the centre of a turn on the spot lies at most; how far centres
+/// may lie apart; how far beside the axle a frame is told. Derived: half a track is a wheel; chosen: odometry
 /// turns on the spot about one point, and wheels that are driven unequally by a tenth shift it by 0.025.
 inline constexpr double kNearWheels = 0.6, kTurnsAgree = 0.03, kBesideAxle = 0.05;
 

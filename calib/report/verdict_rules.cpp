@@ -347,7 +347,7 @@ Objections lidar_yaw(const Calibration& calibration, const VerdictEvidence& evid
   if (!yaw || !calibration.robot.lidar_pose || names_no_cause(evidence)) return {};
   const double apart = math::wrap_angle(*yaw - (*calibration.robot.lidar_pose)[2]);
   if (!(std::abs(apart) > classical::settings::kFarYaw_rad)) return {};
-  // Of odometry that looks backwards the sides are exchanged: what it calls left is the right wheel.
+  // Odometry that looks backwards has its sides exchanged: what it calls left is the right wheel.
   if (evidence.motion == MotionSource::odometry &&
       std::abs(apart) > math::kPi - classical::settings::kFarYaw_rad)
     return {refusal("the odometry looks backwards by what lidar_pose says, " +

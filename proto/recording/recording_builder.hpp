@@ -39,7 +39,8 @@ class RecordingBuilder {
                std::optional<double> t = std::nullopt);
   /// Something was taken where the file held several.
   void choose(const std::string& choice) { recording_.choices.push_back(choice); }
-  /// What is added is not in the order in which a recorder had it: where stamps go back, no clock was set.
+  /// The order of the samples is not that in which a recorder had them: where stamps go back, no clock was
+  /// set.
   void distrust_order() { is_in_order_ = false; }
   /// Messages of it were taken.
   void take_from(Middleware middleware) { recording_.middleware = middleware; }
