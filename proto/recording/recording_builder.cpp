@@ -113,6 +113,36 @@ Error missing_unit(const std::string& field, double value, const char* unit, dou
       where, remedy};
 }
 
+/// Empty where no counter wraps at a number of its own.
+std::string text_of_wraps(const std::array<CounterModulus, 2>& moduli) {
+  const auto& [left, right] = moduli;
+  std::string text;
+  if (left.modulus != 0 && left.modulus == right.modulus)
+    text = "both counters wrap at " + std::to_string(left.modulus);
+  else if (left.modulus != 0 && right.modulus != 0)
+    text = "the left counter wraps at " + std::to_string(left.modulus) + ", the right one at " +
+           std::to_string(right.modulus);
+  else if (left.modulus != 0 || right.modulus != 0)
+    text = std::string("the ") + (left.modulus != 0 ? "left" : "right") + " counter wraps at " +
+           std::to_string(std::max(left.modulus, right.modulus));
+  if (left.is_fast || right.is_fast)
+    text += "; steps of half of that and more were told by the step before each";
+  return text;
+}
+
+/// Empty where no jump looks like a wrap at a number that the samples do not tell.
+std::string text_of_suspected(const std::array<CounterModulus, 2>& moduli) {
+  std::string text;
+  for (std::size_t side = 0; side < 2; ++side)
+    if (moduli.at(side).suspected != 0)
+      text += std::string(text.empty() ? "the " : ", the ") + (side == 0 ? "left" : "right") +
+              " counter seems to wrap at about " + std::to_string(moduli.at(side).suspected);
+  return text.empty() ? text
+                      : text +
+                            "; so far apart the samples do not tell where it went on: record the counts more "
+                            "often, or counts that do not start again";
+}
+
 Values values_of(const TickSample& sample) {
   return {static_cast<double>(sample.left), static_cast<double>(sample.right), 0.0};
 }
@@ -580,9 +610,9 @@ void RecordingBuilder::count_on() {
       include(discarded_[{"ticks", kMisread}], ticks[i].t);
   if (counts.jumps > 0) discarded_[{"ticks", kUncontinued}].of = ticks.size() - 1;
   if (counts.misread > 0) discarded_[{"ticks", kMisread}].of = ticks.size();
-  if (counts.modulus)
-    recording_.repairs.push_back({"ticks", "continued where they start again",
-                                  "both counters wrap at " + std::to_string(*counts.modulus)});
+  const std::string wraps = text_of_wraps(counts.moduli), suspected = text_of_suspected(counts.moduli);
+  if (!wraps.empty()) recording_.repairs.push_back({"ticks", "continued where they start again", wraps});
+  if (!suspected.empty()) recording_.repairs.push_back({"ticks", "left out where they jump", suspected});
 }
 
 const char* name_of(MotionSource source) {

@@ -8,8 +8,6 @@
 #include <optional>
 #include <utility>
 
-#include "proto/recording/counter_modulus.hpp"
-
 namespace odomcalib {
 namespace {
 
@@ -46,7 +44,7 @@ struct Width {
   bool possible;
 };
 
-using Widths = std::array<Width, 3>;
+using Widths = std::array<Width, 2>;
 
 bool fits(const std::vector<TickSample>& ticks, std::int64_t modulus) {
   const auto inside = [&](std::int64_t low) {
@@ -58,10 +56,8 @@ bool fits(const std::vector<TickSample>& ticks, std::int64_t modulus) {
 }
 
 Widths widths_of(const std::vector<TickSample>& ticks) {
-  const auto other = counter_modulus(ticks);
   return {Width{std::int64_t{1} << 16, fits(ticks, std::int64_t{1} << 16)},
-          Width{std::int64_t{1} << 32, fits(ticks, std::int64_t{1} << 32)},
-          Width{other.value_or(0), other.has_value()}};
+          Width{std::int64_t{1} << 32, fits(ticks, std::int64_t{1} << 32)}};
 }
 
 /// The upper median of at least one value.
@@ -201,6 +197,16 @@ std::int64_t smallest_step(const std::vector<TickSample>& ticks) {
   return std::clamp<std::int64_t>(smallest, 1, kCoarsestStep);
 }
 
+// Times the usual interval: across a longer one samples were lost, and a counter that wraps at a small number
+// may have wrapped more than once. Chosen, between one interval and two.
+constexpr double kLostSamples = 1.5;
+
+/// The step before, from which the next one is expected.
+struct UsualStep {
+  Counts counts{};
+  double interval = 0.0;  // s
+};
+
 struct Change {
   Counts counts{};
   bool continued = false;
@@ -210,18 +216,26 @@ struct Change {
 class Continuation {
  public:
   Continuation(const std::vector<TickSample>& ticks, const RobotDescription& robot)
-      : speeds_(ticks, robot), widths_(widths_of(ticks)), finest_(smallest_step(ticks)) {}
+      : speeds_(ticks, robot),
+        widths_(widths_of(ticks)),
+        moduli_(counter_moduli(ticks)),
+        finest_(smallest_step(ticks)) {}
 
-  [[nodiscard]] std::optional<std::int64_t> own_modulus() const {
-    return widths_.back().possible ? std::optional(widths_.back().modulus) : std::nullopt;
-  }
+  [[nodiscard]] const std::array<CounterModulus, 2>& moduli() const { return moduli_; }
 
   [[nodiscard]] std::vector<Change> changes(const std::vector<TickSample>& ticks) const {
     std::vector<Change> out(ticks.size());
-    Counts usual{};
+    UsualStep usual;
+    bool lost = false;
     for (std::size_t i = 1; i < ticks.size(); ++i) {
+      const bool rests =
+          i > 1 && is_unchanged(ticks[i - 2], ticks[i - 1]) && is_unchanged(ticks[i - 1], ticks[i]);
+      if (rests) usual = {};
       out[i] = between(ticks[i - 1], ticks[i], usual);
-      if (out[i].continued) usual = out[i].counts;
+      // Fast counters tell the motion by the step before, and where that is not known, by the next rest.
+      lost = is_fast() && !rests && (lost || !out[i].continued);
+      if (lost) out[i].continued = false;
+      if (out[i].continued) usual = {out[i].counts, ticks[i].t - ticks[i - 1].t};
     }
     mend_glitches(ticks, out);
     break_at_spikes(ticks, out);
@@ -229,15 +243,38 @@ class Continuation {
   }
 
  private:
-  [[nodiscard]] Change between(const TickSample& before, const TickSample& now, const Counts& usual) const {
+  [[nodiscard]] bool is_fast() const { return moduli_[0].is_fast || moduli_[1].is_fast; }
+
+  static bool is_unchanged(const TickSample& before, const TickSample& now) {
+    return before.segment == now.segment && before.left == now.left && before.right == now.right;
+  }
+
+  /// Nothing where the counter may have gone on by more than the samples tell.
+  [[nodiscard]] std::optional<std::int64_t> step_of(std::size_t side, std::int64_t difference,
+                                                    double interval, const UsualStep& usual) const {
+    const CounterModulus& own = moduli_.at(side);
+    if (own.suspected != 0 && std::abs(static_cast<double>(difference)) > own.jump) return std::nullopt;
+    if (own.modulus == 0) return nearest_wrap(difference, widths_);
+    const double intervals = speeds_.usual_interval(interval) / speeds_.usual_interval(usual.interval);
+    const double expected = static_cast<double>(usual.counts.at(side)) * intervals;
+    const bool samples_were_lost = intervals > kLostSamples;
+    if (samples_were_lost && std::abs(expected) > 0.5 * static_cast<double>(own.modulus)) return std::nullopt;
+    return nearest_step(difference, own.modulus, own.is_fast || samples_were_lost ? expected : 0.0);
+  }
+
+  [[nodiscard]] Change between(const TickSample& before, const TickSample& now,
+                               const UsualStep& usual) const {
     if (before.segment != now.segment) return {};
     const auto left = difference(now.left, before.left);
     const auto right = difference(now.right, before.right);
     if (!left || !right) return {};
-    const Counts counts{nearest_wrap(*left, widths_), nearest_wrap(*right, widths_)};
-    // A counter that wraps passes zero as any other number.
-    if (is_reset(now, counts, usual, finest_)) return {};
     const double interval = now.t - before.t;
+    const auto left_step = step_of(0, *left, interval, usual),
+               right_step = step_of(1, *right, interval, usual);
+    if (!left_step || !right_step) return {};
+    const Counts counts{*left_step, *right_step};
+    // A counter that wraps passes zero as any other number.
+    if (is_reset(now, counts, usual.counts, finest_)) return {};
     const bool possible = speeds_.possible(counts[0], interval) && speeds_.possible(counts[1], interval);
     return {counts, possible};
   }
@@ -275,7 +312,7 @@ class Continuation {
       if (in_line(changes[i], to, before, usual, kClear) ||
           in_line(changes[i + 1], from, before, usual, kClear))
         continue;
-      const Change across = between(ticks[i - 1], ticks[i + 1], before.counts);
+      const Change across = between(ticks[i - 1], ticks[i + 1], {before.counts, usual});
       if (!in_line(across, to + from, before, usual, 1.0)) continue;
       changes[i] = changes[i + 1] = across;
       changes[i].misread = true;
@@ -302,6 +339,7 @@ class Continuation {
 
   Speeds speeds_;
   Widths widths_;
+  std::array<CounterModulus, 2> moduli_;
   std::int64_t finest_;
 };
 
@@ -311,7 +349,7 @@ ContinuedCounts continue_counts(std::vector<TickSample>& ticks, const RobotDescr
   const Continuation continuation(ticks, robot);
   const auto changes = continuation.changes(ticks);
   ContinuedCounts found;
-  found.modulus = continuation.own_modulus();
+  found.moduli = continuation.moduli();
   std::int32_t segment = 0, given = 0;
   Counts counts{};
   for (std::size_t i = 0; i < ticks.size(); ++i) {
