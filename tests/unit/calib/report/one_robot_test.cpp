@@ -32,6 +32,7 @@ report::Homogeneity that_differ(Eigen::Index parameter, double difference, doubl
   found.p_value = 1e-6;
   found.recording = 1;
   found.parameter = parameter;
+  found.odd = OddRecordings{{1}, {0}, false, {}, {{parameter, difference, sigmas}}, {}};
   return found;
 }
 
@@ -48,6 +49,38 @@ TEST(RecordingsApart, are_told_in_the_unit_of_what_differs) {
   EXPECT_NE(said(kMountX, 3e-3).find("is 3 mm larger"), std::string::npos) << said(kMountX, 3e-3);
   EXPECT_NE(said(kMountYaw, 0.0174533).find("is 1 degrees larger"), std::string::npos)
       << said(kMountYaw, 0.0174533);
+}
+
+TEST(RecordingsApart, of_two_are_both_named_and_neither_is_blamed) {
+  const std::string text = said(0, 7.5e-4);
+  EXPECT_NE(text.find("larger in b.jsonl than in a.jsonl"), std::string::npos) << text;
+  EXPECT_NE(text.find("which of them changed they do not tell"), std::string::npos) << text;
+}
+
+TEST(RecordingsApart, say_all_that_changed_and_what_explains_it_as_well) {
+  std::vector<Recording> recordings = named_recordings();
+  recordings.resize(4);
+  recordings[2].name = "c.jsonl", recordings[3].name = "d.jsonl";
+  auto found = that_differ(0, 7.5e-4, 10.0);
+  found.own.resize(4, found.own[0]);
+  found.odd = OddRecordings{{1}, {0, 2}, true, {3}, {{0, 7.5e-4, 10.0}, {1, 7.5e-4, 9.0}}, {{2, -4e-3, 8.0}}};
+  const auto apart = recordings_apart(found, recordings);
+  ASSERT_TRUE(apart);
+  EXPECT_NE(apart->reason.find(
+                "in b.jsonl left_wheel_diameter is 1 % (1.5 mm) larger and right_wheel_diameter "
+                "is 1 % (1.5 mm) larger than in the others, 10 deviations; it may as well be that "
+                "track_width is 1 % (4 mm) smaller there, 8 deviations; d.jsonl agrees with neither"),
+            std::string::npos)
+      << apart->reason;
+}
+
+/// Each alone stays below the bound, and its deviations hide it; together they are no chance.
+TEST(RecordingsApart, beyond_the_bound_by_what_explains_them_are_refused) {
+  auto found = that_differ(0, 1e-6, 1.0);
+  found.odd->changes = {{0, 1.01 * 0.005 * 0.075, 10.0}};
+  EXPECT_TRUE(recordings_apart(found, named_recordings())->refuses);
+  found.odd->changes = {{0, 0.99 * 0.005 * 0.075, 10.0}};
+  EXPECT_FALSE(recordings_apart(found, named_recordings())->refuses);
 }
 
 TEST(RecordingsApart, beyond_a_bound_of_each_kind_are_refused) {
