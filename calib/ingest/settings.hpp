@@ -55,6 +55,8 @@ inline constexpr double kTurnsInDegrees = 4.0;
 /// Relative difference of the steps from beam to beam of two scans, by rounding. Derived: of single
 /// precision.
 inline constexpr double kSameStep = 1e-4;
+/// The same where bearings are stated beam by beam. Chosen: the speed of a head wanders by some per cent.
+inline constexpr double kSameStepListed = 0.1;
 /// Steps, by which the first beam of a part may miss the one after the last beam of the part before. Chosen,
 /// insensitive.
 inline constexpr double kNextBeam = 0.6;

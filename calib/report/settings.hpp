@@ -102,8 +102,7 @@ inline constexpr double kMostSigns = 5.8;
 /// Largest weight of a single sign: one alone never refuses. Chosen, insensitive.
 inline constexpr double kHeaviestSign = 4.0;
 
-// --- Several recordings
-// ---------------------------------------------------------------------------------------
+// --- Several recordings ----------------------------------------------------------------------------------
 
 /// Level of the test of homogeneity. Chosen: one in a thousand sets of recordings of one robot is taken for
 /// several.

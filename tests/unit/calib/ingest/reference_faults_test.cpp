@@ -3,6 +3,10 @@
 
 #include <gtest/gtest.h>
 
+#include <cstddef>
+#include <numeric>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include "calib/ingest/put_right.hpp"
@@ -38,20 +42,122 @@ TEST(JoinedTurns, are_of_one_lidar) {
   EXPECT_FALSE(with_joined_turns(recording)) << "each part follows one of the other lidar";
 }
 
-TEST(JoinedTurns, are_of_beams_on_one_grid) {
-  Recording by_beam, by_time;
-  for (int k = 0; k < 60; ++k) {
-    const Scan part = third_of_turn(k);
-    by_beam.scans.push_back(part);
-    by_time.scans.push_back(part);
-    if (k % 2 == 0) continue;  // the first decides whether turns are looked for
-    for (std::size_t beam = 0; beam < part.ranges.size(); ++beam) {
-      by_beam.scans.back().angles.push_back(static_cast<float>(part.angle(beam)));
-      by_time.scans.back().times.push_back(1e-4F * static_cast<float>(beam));
+/// Beam by beam what the grid says.
+Scan listed(const Scan& part) {
+  Scan scan = part;
+  scan.angles.clear(), scan.times.clear();
+  for (std::size_t beam = 0; beam < part.ranges.size(); ++beam) {
+    scan.angles.push_back(static_cast<float>(part.angle(beam)));
+    scan.times.push_back(1e-4F * static_cast<float>(beam));
+  }
+  scan.angle_min = scan.angle_increment = 0.0;
+  return scan;
+}
+
+TEST(JoinedTurns, are_made_of_beams_with_bearings_and_times_of_their_own) {
+  for (const int every : {1, 2}) {
+    Recording recording;
+    for (int k = 0; k < 60; ++k)
+      recording.scans.push_back(k % every == 0 ? listed(third_of_turn(k)) : third_of_turn(k));
+    const auto joined = with_joined_turns(recording);
+    ASSERT_TRUE(joined) << every;
+    ASSERT_EQ(joined->scans.size(), 20U);
+    const Scan& turn = joined->scans[7];
+    ASSERT_EQ(turn.ranges.size(), 360U);
+    EXPECT_FALSE(turn.time_increment);
+    for (const std::size_t beam : {0U, 119U, 120U, 359U}) {
+      const double bearing = kWholeTurn * static_cast<double>(beam) / 360.0;
+      EXPECT_NEAR(math::wrap_angle(turn.angle(beam) - bearing), 0.0, 1e-5);
+      EXPECT_EQ(turn.ranges[beam], recording.scans[21 + beam / 120].ranges[beam % 120]);
+    }
+    if (every == 2) continue;
+    EXPECT_NEAR(turn.times[121], 0.04 + 1e-4, 1e-6);
+  }
+}
+
+/// Messages of so many beams each, a degree apart, over and over; a turn of the head takes 0.1 s.
+std::vector<Scan> messages(const std::vector<std::size_t>& beams, int sweeps, double first = -2.0) {
+  std::vector<Scan> all;
+  for (int sweep = 0; sweep < sweeps; ++sweep) {
+    std::size_t before = 0;
+    for (const std::size_t count : beams) {
+      Scan scan;
+      scan.t = 0.1 * sweep + 0.1 * static_cast<double>(before) / 360.0;
+      scan.angle_increment = kWholeTurn / 360.0;
+      scan.angle_min = first + scan.angle_increment * static_cast<double>(before);
+      scan.ranges.assign(count, 1.0F + 0.01F * static_cast<float>(sweep));
+      all.push_back(std::move(scan));
+      before += count;
     }
   }
-  EXPECT_FALSE(with_joined_turns(by_beam));
-  EXPECT_FALSE(with_joined_turns(by_time));
+  return all;
+}
+
+TEST(JoinedTurns, may_be_sweeps_of_a_lidar_that_does_not_see_all_round) {
+  using Beams = std::vector<std::size_t>;
+  for (const Beams& beams : {Beams(9, 30), Beams(3, 90), Beams(2, 90), Beams(6, 44), Beams{80, 80, 20}}) {
+    Recording recording;
+    recording.scans = messages(beams, 30);
+    const auto joined = with_joined_turns(recording);
+    ASSERT_TRUE(joined) << beams.size();
+    ASSERT_EQ(joined->scans.size(), 30U) << beams.size();
+    EXPECT_EQ(joined->scans[7].ranges.size(), std::accumulate(beams.begin(), beams.end(), 0U));
+    EXPECT_EQ(joined->scans[7].t, recording.scans[7 * beams.size()].t);
+    EXPECT_NEAR(joined->scans[7].time_increment.value_or(0.0), 0.1 / 360.0, beams.size() == 3 ? 1e-4 : 1e-9);
+    EXPECT_TRUE(joined->discarded.empty());
+    EXPECT_EQ(joined->repairs.back().chosen, "joined from " + std::to_string(beams.size()) + " parts each");
+  }
+}
+
+TEST(JoinedTurns, of_parts_of_unequal_size_have_all_of_them) {
+  Recording recording;
+  recording.scans = messages({160, 160, 40}, 30);
+  const auto joined = with_joined_turns(recording);
+  ASSERT_TRUE(joined);
+  EXPECT_EQ(joined->scans.size(), 30U);
+  EXPECT_EQ(joined->scans[3].ranges.size(), 360U);
+}
+
+TEST(JoinedTurns, leave_out_a_sweep_that_lacks_a_part) {
+  for (const std::size_t lost : {90U, 94U, 98U}) {  // the first, the middle and the last of a sweep
+    Recording recording;
+    recording.scans = messages(std::vector<std::size_t>(9, 30), 30);
+    recording.scans.erase(recording.scans.begin() + static_cast<std::ptrdiff_t>(lost));
+    const auto joined = with_joined_turns(recording);
+    ASSERT_TRUE(joined);
+    EXPECT_EQ(joined->scans.size(), 29U);
+    EXPECT_EQ(joined->discarded.back().count, 8U);
+  }
+}
+
+TEST(JoinedTurns, stay_turns_where_parts_are_lost_now_and_then) {
+  for (const std::size_t parts : {2U, 3U, 4U})
+    for (const std::size_t every : {11U, 25U}) {
+      Recording recording;
+      const std::vector<Scan> all = messages(std::vector<std::size_t>(parts, 360 / parts), 60);
+      for (std::size_t k = 0; k < all.size(); ++k)
+        if (k % every != 7) recording.scans.push_back(all[k]);
+      const auto joined = with_joined_turns(recording);
+      ASSERT_TRUE(joined) << parts << " " << every;
+      EXPECT_EQ(joined->scans.front().ranges.size(), 360U);
+      EXPECT_EQ(joined->repairs.back().chosen, "joined from " + std::to_string(parts) + " parts each");
+      EXPECT_EQ(joined->scans.size() * parts + joined->discarded.back().count, recording.scans.size());
+    }
+}
+
+TEST(JoinedTurns, are_not_made_of_whole_sweeps) {
+  Recording sweeps, turns, halves, to_and_fro;
+  sweeps.scans = messages({270}, 60);
+  turns.scans = messages({360}, 60);
+  halves.scans = messages({360, 180}, 30);  // every second scan has half of the beams
+  for (std::size_t k = 1; k < halves.scans.size(); k += 2) halves.scans[k].angle_min = -2.0;
+  to_and_fro.scans = messages({270}, 60);
+  for (std::size_t k = 1; k < to_and_fro.scans.size(); k += 2) {
+    Scan& back = to_and_fro.scans[k];
+    back.angle_min += 270.0 * back.angle_increment, back.angle_increment *= -1.0;
+  }
+  for (const Recording& recording : {sweeps, turns, halves, to_and_fro})
+    EXPECT_FALSE(with_joined_turns(recording));
 }
 
 /// Poses of a steady way, 0.1 m from one to the next; the one of this number is sent again so many times.
