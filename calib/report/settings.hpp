@@ -164,14 +164,14 @@ inline constexpr int kOutlierDraws = 999;
 
 // --- Residual trace --------------------------------------------------------------------------------------
 
-/// Gain of the correlation ratio that a division must bring. Chosen, insensitive.
+/// Gain of the correlation ratio that a division must bring. Chosen, sensitive.
 inline constexpr double kWorthDividing = 0.1;
 /// Gain of the correlation ratio that a less simple covariate must bring. Chosen, insensitive.
 inline constexpr double kWorthChanging = 0.02;
-/// rad; a reversal farther back is forgotten. Chosen, insensitive.
+/// rad; a reversal farther back is forgotten. Chosen, sensitive.
 inline constexpr double kFarBack = 20.0;
 /// Index in vehicle::kPlays of the play by which a wheel's reversal is drawn: so much of it goes by until it
-/// is taken up. Chosen, insensitive.
+/// is taken up. Chosen, sensitive.
 inline constexpr std::size_t kUsualPlay = 9;
 /// Bins over a covariate, and points of the picture. Chosen, sensitive.
 inline constexpr std::size_t kTraceBins = 16, kMostTracePoints = 300;

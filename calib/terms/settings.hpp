@@ -30,7 +30,7 @@ inline constexpr int kLeastPart = 2;
 inline constexpr int kFirstHalving = 3, kLastHalving = 5;
 /// s, of a lidar's metre that fades. Chosen: warming up is a matter of minutes.
 inline constexpr std::array kFadingTimes_s = {30.0, 100.0};
-/// Factors on the time constant that was found, which are tried. Chosen, untried.
+/// Factors on the time constant that was found, which are tried. Chosen, sensitive.
 inline constexpr std::array kFadingFactors = {0.5, 0.71, 1.41, 2.0};
 
 // --- Lidar smooth term -----------------------------------------------------------------------------------

@@ -203,6 +203,15 @@ def short_sighted(metres):
     return each("scan", lambda scan: scan.update(ranges=[r if r and r < metres else None for r in scan["ranges"]]))
 
 
+def fading(share, seconds):
+    """A lidar whose metre is too long by a share that fades with this time constant."""
+    def change(scan):
+        factor = 1.0 + share * math.exp(-scan["t"] / seconds)
+        scan["ranges"] = [r and factor * r for r in scan["ranges"]]
+
+    return each("scan", change)
+
+
 def slips(begin, end, count):
     """The left wheel slips in some tenths of a second: by 400 counts each."""
     def changed(lines, _):
@@ -247,8 +256,8 @@ TRIALS = {
     "mast_flex": Trial("--effect mast_flex --room furnished --drive random --duration 120 --seed 5144 --beams 90"),
     "short_gear_play": Trial("--effect gear_play --room furnished --drive random --duration 60 --seed 5131 --beams 90"),
     "short_traction_slip": Trial("--effect traction_slip --room furnished --drive random --duration 60 --seed 5134 --beams 90"),
+    "fading_metre": Trial("--room furnished --drive random --duration 120 --seed 5142 --beams 90", fading(0.05, 30.0)),
     "slips": Trial(SHORT, slips(10.0, 50.0, 25), PAGE),
-    "slips_for_a_while": Trial(SHORT, slips(20.0, 30.0, 10), PAGE),
     "two_robots": Trial("--room furnished --drive random --duration 120 --seed 5118 --beams 90",
                         command="solve {file of short} {file} --same-robot --out result"),
     # Other references and other forms of the wheels' motion.
