@@ -42,8 +42,9 @@ Eigen::VectorXd with(Eigen::Index parameter, double factor) {
 }
 
 std::vector<Eigen::Index> parameters_of(const std::vector<ParameterChange>& changes) {
-  std::vector<Eigen::Index> all;
-  for (const ParameterChange& change : changes) all.push_back(change.parameter);
+  std::vector<Eigen::Index> all(changes.size());
+  std::transform(changes.begin(), changes.end(), all.begin(),
+                 [](const ParameterChange& change) { return change.parameter; });
   std::sort(all.begin(), all.end());
   return all;
 }

@@ -117,7 +117,7 @@ TEST(CounterModulus, gives_the_motion_of_the_counter_that_never_wrapped) {
 TEST(CounterModulus, is_found_where_wheels_go_far_from_sample_to_sample) {
   for (const std::int64_t modulus : {256, 1000, 4096, 9000})
     for (const double share : {0.05, 0.09, 0.2})  // of the number, in a fifth of what is read here
-      for (const std::size_t every : {5, 10}) {
+      for (const std::size_t every : {5U, 10U}) {
         const std::vector<TickSample> plain = guided_drive(share * static_cast<double>(modulus));
         const std::vector<TickSample> seldom = thinned(plain, every);
         const std::string what =
@@ -195,7 +195,7 @@ TEST(CounterModulus, that_is_not_told_is_suspected_and_its_jumps_are_left_out) {
 
 TEST(CounterModulus, is_not_suspected_in_counts_that_do_not_wrap) {
   for (const double speed : {2.0, 12.0, 300.0})
-    for (const std::size_t every : {1, 5, 25, 100}) {
+    for (const std::size_t every : {1U, 5U, 25U, 100U}) {
       EXPECT_FALSE(is_suspected(thinned(drive(speed), every))) << speed << " every " << every;
       EXPECT_FALSE(is_suspected(thinned(guided_drive(speed), every))) << speed << " every " << every;
     }
@@ -206,6 +206,7 @@ TEST(CounterModulus, is_not_suspected_in_counts_that_do_not_wrap) {
   for (std::size_t k = 50; k < misread.size(); k += 200) misread[k].left += 1'000'000;
   EXPECT_FALSE(is_suspected(misread)) << "wild counts";
   std::vector<TickSample> rocking;
+  rocking.reserve(600);
   for (int k = 0; k < 600; ++k) rocking.push_back({0.1 * k, k % 4 < 2 ? 0 : 230, k % 6 < 3 ? 0 : 230, 0});
   EXPECT_FALSE(is_suspected(rocking)) << "to and fro by a step";
 }
