@@ -12,6 +12,7 @@
 
 #include "proto/recording/clock_set_back.hpp"
 #include "proto/recording/scan_checks.hpp"
+#include "proto/recording/scan_parts.hpp"
 #include "proto/recording/second_writer.hpp"
 #include "proto/recording/stamp_units.hpp"
 #include "proto/recording/tick_counts.hpp"
@@ -542,6 +543,10 @@ void RecordingBuilder::sort_streams() {
   sort_by_time(recording_.gyro);
   const auto same = [](const auto& a, const auto& b) { return a.t == b.t; };
   const auto same_scan = [](const Scan& a, const Scan& b) { return a.t == b.t && a.sensor == b.sensor; };
+  if (const std::size_t joined = join_parts_of_one_stamp(recording_.scans); joined > 0)
+    choose("scan: " + std::to_string(joined) +
+           " messages carry the stamp of the one before and go on where it ended; joined, " +
+           std::to_string(recording_.scans.size()) + " scans");
   drop_repeated("ticks", recording_.ticks, same);
   drop_repeated("wheels", recording_.wheels, same);
   drop_repeated("wheel_speeds", recording_.wheel_speeds, same);

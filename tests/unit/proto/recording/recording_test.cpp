@@ -299,6 +299,19 @@ TEST(Recording, turns_beams_that_are_no_distance_into_no_reading) {
   EXPECT_EQ(discarded(r, "beam", "not a number"), 5U);
 }
 
+TEST(Recording, joins_parts_of_a_turn_that_all_carry_its_stamp) {
+  std::string text(kRobotLine);
+  for (const char* t : {"0", "0.1"})
+    for (const char* first : {"0", "1.5707963", "3.1415927", "-1.5707963"})
+      text += std::string(R"({"type":"scan","t":)") + t + R"(,"angle_min":)" + first +
+              R"(,"angle_increment":0.78539816,"range_max":8,"ranges":[1,2]})" + "\n";
+  const auto r = value_of(read_text(text));
+  ASSERT_EQ(r.scans.size(), 2U) << list_discarded(r);
+  EXPECT_EQ(r.scans[1].ranges.size(), 8U);
+  EXPECT_EQ(discarded(r, "scan", "repeated time stamp"), 0U);
+  EXPECT_NE(r.choices.at(0).find("6 messages carry the stamp of the one before"), std::string::npos);
+}
+
 TEST(Recording, sorts_what_is_up_to_a_second_late_and_discards_what_is_later) {
   const auto result = value_of(read_text(kRobotLine + ticks_line(2, 20, 20) + ticks_line(1, 10, 10) +
                                          ticks_line(3, 30, 30) + ticks_line(1.99, 19, 19) + kScan));
