@@ -12,6 +12,7 @@
 #include "calib/ingest/unit_check.hpp"
 #include "calib/math/median.hpp"
 #include "calib/math/number_text.hpp"
+#include "proto/recording/scan_checks.hpp"
 
 namespace odomcalib::calib::ingest {
 namespace {
@@ -133,11 +134,22 @@ std::optional<Error> standing_counts(std::span<const Recording> recordings) {
                "check that wheel's encoder and its cable, or drive with both wheels"};
 }
 
-std::size_t readings_outside(const Recording& recording) {
+struct ReadingsOutside {
   std::size_t count = 0;
-  for (const Discarded& discarded : recording.discarded)
-    if (discarded.what == "beam" && discarded.reason == kOutsideLimits) count += discarded.count;
-  return count;
+  const RangeUnit* unit = nullptr;  ///< that most of them look like
+};
+
+ReadingsOutside readings_outside(const Recording& recording) {
+  ReadingsOutside all;
+  std::size_t most = 0;
+  for (const Discarded& discarded : recording.discarded) {
+    if (discarded.what != "beam" || !discarded.reason.starts_with(kOutsideLimits)) continue;
+    all.count += discarded.count;
+    if (discarded.count <= most) continue;
+    most = discarded.count;
+    all.unit = range_unit_of_reason(discarded.reason);
+  }
+  return all;
 }
 
 bool is_blind(const Scan& scan) {
@@ -146,17 +158,21 @@ bool is_blind(const Scan& scan) {
 
 std::optional<Error> no_readings(const Recording& recording) {
   if (!std::all_of(recording.scans.begin(), recording.scans.end(), is_blind)) return std::nullopt;
-  const std::size_t outside = readings_outside(recording);
-  if (outside == 0)
+  const ReadingsOutside outside = readings_outside(recording);
+  if (outside.count == 0)
     return Error{
         ErrorCode::empty, "no scan has a reading", recording.name,
         "check what covers the lidar, that nothing nearer than its range_min surrounds it, and that there "
         "are walls within its range_max"};
   const Scan& scan = recording.scans.front();
   return Error{ErrorCode::format,
-               "all " + std::to_string(outside) + " readings lie " + kOutsideLimits + ", " +
-                   number(scan.range_min) + " and " + number(scan.range_max) + " m",
-               recording.name, "ranges and their limits must be in metres"};
+               "all " + std::to_string(outside.count) + " readings lie " + kOutsideLimits + ", " +
+                   number(scan.range_min) + " and " + number(scan.range_max) + " m" +
+                   (outside.unit == nullptr ? "" : std::string(": they look like ") + outside.unit->name),
+               recording.name,
+               outside.unit == nullptr ? "ranges and their limits must be in metres"
+                                       : "multiply the ranges by " + number(outside.unit->size) +
+                                             ": their limits are in metres already"};
 }
 
 std::optional<Error> check_one(const Recording& recording) {

@@ -237,7 +237,7 @@ void RecordingBuilder::drop_late_scans() {
     const auto problems = clean_scan(scan);
     readings_ += scan.ranges.size();
     discard("beam", "not a number", problems.not_a_number);
-    discard("beam", kOutsideLimits, problems.out_of_limits);
+    discard("beam", reason_outside_limits(problems.unit), problems.out_of_limits);
     kept.push_back(std::move(scan));
   }
   recording_.scans = std::move(kept);

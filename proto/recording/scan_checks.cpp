@@ -1,9 +1,14 @@
 #include "proto/recording/scan_checks.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numeric>
+#include <string>
+#include <utility>
 #include <vector>
+
+#include "proto/recording/recording.hpp"
 
 namespace odomcalib {
 namespace {
@@ -19,9 +24,38 @@ bool is_grid(const Scan& scan) {
   return std::isfinite(scan.angle_min) && std::isfinite(scan.angle_increment) && scan.angle_increment != 0.0;
 }
 
+// m; lidars that measure 80 m see nothing at most bearings.
+constexpr double kFarthestMedian = 60.0;
+// m, where the median reading lies for most robots. Chosen: the unit that is nearest is named.
+constexpr double kUsualMedian = 2.5;
+
+constexpr std::array kRangeUnits = {RangeUnit{"millimetres", 1e-3}, RangeUnit{"centimetres", 1e-2},
+                                    RangeUnit{"inches", 0.0254}};
+constexpr const char* kLooksLike = ": they look like ";
+
+/// The unit in which all of these would lie within the limits; null where they may be metres, or one value
+/// that stands for no reading.
+const RangeUnit* unit_of(std::vector<float> outside, const Scan& scan) {
+  if (outside.empty() || !(scan.range_max > 0.0)) return nullptr;
+  std::sort(outside.begin(), outside.end());
+  const double median = static_cast<double>(outside[outside.size() / 2]);
+  if (!(median > kFarthestMedian) || outside.front() == outside.back()) return nullptr;
+  const RangeUnit* found = nullptr;
+  const auto distance = [&](const RangeUnit& unit) {
+    return std::abs(std::log(median * unit.size / kUsualMedian));
+  };
+  for (const RangeUnit& unit : kRangeUnits) {
+    if (static_cast<double>(outside.back()) * unit.size > scan.range_max) continue;
+    if (found == nullptr || distance(unit) < distance(*found)) found = &unit;
+  }
+  return found;
+}
+
 /// Replaces what is no distance by 0 ("no reading").
 BeamProblems clean_ranges(Scan& scan) {
   BeamProblems problems;
+  std::vector<float> outside;
+  bool all_outside = true;
   // Limits and ranges were rounded on their own ways to float: allow for one unit in the last place.
   const auto nearest = static_cast<float>(scan.range_min) * (1.0F - 1e-6F);
   const auto farthest =
@@ -29,10 +63,15 @@ BeamProblems clean_ranges(Scan& scan) {
   for (float& range : scan.ranges) {
     if (range == 0.0F) continue;
     const bool number = std::isfinite(range);
-    if (number && range > 0.0F && range >= nearest && range <= farthest) continue;
+    if (number && range > 0.0F && range >= nearest && range <= farthest) {
+      all_outside = false;
+      continue;
+    }
     ++(number ? problems.out_of_limits : problems.not_a_number);
+    if (number && range > 0.0F && all_outside) outside.push_back(range);
     range = 0.0F;
   }
+  if (all_outside) problems.unit = unit_of(std::move(outside), scan);
   return problems;
 }
 
@@ -86,6 +125,18 @@ const char* scan_problem(const Scan& scan) {
   if (!all_finite(scan.angles)) return "an angle is not a number";
   if (!all_finite(scan.times)) return "a beam time is not a number";
   return nullptr;
+}
+
+std::string reason_outside_limits(const RangeUnit* unit) {
+  return unit == nullptr ? std::string(kOutsideLimits)
+                         : std::string(kOutsideLimits) + kLooksLike + unit->name;
+}
+
+const RangeUnit* range_unit_of_reason(const std::string& reason) {
+  const auto* const unit = std::find_if(kRangeUnits.begin(), kRangeUnits.end(), [&](const RangeUnit& one) {
+    return reason == reason_outside_limits(&one);
+  });
+  return unit == kRangeUnits.end() ? nullptr : unit;
 }
 
 BeamProblems clean_scan(Scan& scan) {

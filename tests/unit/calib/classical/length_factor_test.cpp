@@ -71,6 +71,7 @@ TEST(LengthFactor, names_the_unit_of_angles_and_speeds) {
   expect_unit(MotionSource::wheel_speeds, wheels(kPi / 30.0), "rpm", "0.10472");
   expect_unit(MotionSource::wheel_speeds, wheels(kPi / 300.0), "rpm times 10", "0.010472");
   expect_unit(MotionSource::wheel_speeds, wheels(1.0 / 0.075), "metres per second", "13.3333");
+  expect_unit(MotionSource::wheel_speeds, wheels(0.01 / 0.075), "centimetres per second", "0.133333");
 }
 
 TEST(LengthFactor, names_the_unit_of_odometry) {

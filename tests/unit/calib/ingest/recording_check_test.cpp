@@ -104,6 +104,13 @@ const std::vector<Mistake> kMistakes = {
        r.discarded.push_back({"beam", "outside range_min and range_max", 36000});
      },
      ErrorCode::format, "all 36000 readings", "metres"},
+    {"millimetres_between_limits_in_metres",
+     [](Recording& r) {
+       for (Scan& scan : r.scans) scan.ranges.assign(360, 0.0F);
+       r.discarded.push_back({"beam", "outside range_min and range_max", 100});
+       r.discarded.push_back({"beam", "outside range_min and range_max: they look like millimetres", 35900});
+     },
+     ErrorCode::format, "m: they look like millimetres", "multiply the ranges by 0.001"},
 };
 
 class RecordingCheck : public ::testing::TestWithParam<Mistake> {};

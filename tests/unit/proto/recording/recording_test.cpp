@@ -312,6 +312,24 @@ TEST(Recording, joins_parts_of_a_turn_that_all_carry_its_stamp) {
   EXPECT_NE(r.choices.at(0).find("6 messages carry the stamp of the one before"), std::string::npos);
 }
 
+TEST(Recording, says_what_ranges_look_like_that_all_lie_beyond_the_limits) {
+  const auto reason = [](const std::string& ranges) {
+    const auto r = value_of(read_text(
+        std::string(kRobotLine) +
+        R"({"type":"scan","t":0,"angle_min":0,"angle_increment":0.1,"range_min":0.1,"range_max":8.2,)"
+        R"("ranges":[)" +
+        ranges + "]}"));
+    return r.discarded.empty() ? "" : r.discarded[0].reason;
+  };
+  const std::string outside = "outside range_min and range_max";
+  EXPECT_EQ(reason("4000,3500,0,2500"), outside + ": they look like millimetres");
+  EXPECT_EQ(reason("400,350,250"), outside + ": they look like centimetres");
+  EXPECT_EQ(reason("30,25,9"), outside) << "they may be metres";
+  EXPECT_EQ(reason("65535,65535,65535"), outside) << "one value stands for no reading";
+  EXPECT_EQ(reason("4000,3500,2"), outside) << "one is within";
+  EXPECT_EQ(reason("4000,3500,9e6"), outside) << "no unit brings them all within";
+}
+
 TEST(Recording, sorts_what_is_up_to_a_second_late_and_discards_what_is_later) {
   const auto result = value_of(read_text(kRobotLine + ticks_line(2, 20, 20) + ticks_line(1, 10, 10) +
                                          ticks_line(3, 30, 30) + ticks_line(1.99, 19, 19) + kScan));
