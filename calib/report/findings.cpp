@@ -10,6 +10,7 @@
 
 #include "calib/classical/motion_kinds.hpp"
 #include "calib/estimation/gyro_fit.hpp"
+#include "calib/matching/point_to_line.hpp"
 #include "calib/report/contact_noise.hpp"
 #include "calib/report/found_effects.hpp"
 #include "calib/report/gate.hpp"
@@ -219,10 +220,13 @@ const measurement::PairSet& thinnest_scans(std::span<const measurement::PairSet>
 
 /// Counts the pairs of scans by their outcome.
 void count_matches(std::span<const measurement::PairSet> sets, VerdictEvidence& evidence) {
+  const std::string too_thin = "match: " + matching::to_string(matching::MatchStatus::too_few_points);
   for (const measurement::PairSet& set : sets) {
     evidence.matched += set.pairs.size();
     evidence.partial += set.partial;
     evidence.unmatched += set.unmatched;
+    if (const auto thin = set.rejected.find(too_thin); thin != set.rejected.end())
+      evidence.too_thin += thin->second;
     evidence.stood += set.stood;
   }
   const measurement::PairSet& thinnest = thinnest_scans(sets);
@@ -260,7 +264,8 @@ Error cause_of(const Error& error, std::span<const measurement::PairSet> sets) {
   const auto what = poor_matches(evidence);
   if (!what) return error;
   return {ErrorCode::refused, *what, "scan matching",
-          "drive where the lidar sees walls on all sides, not along a corridor"};
+          remedy_for_readings(evidence).value_or(
+              "drive where the lidar sees walls on all sides, not along a corridor")};
 }
 
 Calibration begun(const ingest::Recordings& recordings, std::span<const measurement::PairSet> sets) {

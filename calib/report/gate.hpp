@@ -52,6 +52,7 @@ struct VerdictEvidence {
   std::optional<std::string> missing_motion = std::nullopt;
   std::size_t partial = 0;              ///< of the matched pairs, those that leave a direction open
   std::size_t stood = 0;                ///< pairs left out: the wheels turned and the robot stood
+  std::size_t too_thin = 0;             ///< of the unmatched, those with too few readings beside each other
   std::size_t readings = 0, beams = 0;  ///< of a scan, medians: beams that met something, of all
 };
 

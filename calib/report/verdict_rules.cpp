@@ -5,6 +5,7 @@
 #include <cmath>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "calib/classical/length_factor.hpp"
@@ -126,6 +127,14 @@ Objections odometry_off(const Calibration&, const VerdictEvidence& evidence) {
                ratio / settings::kWarnResidual)};
 }
 
+constexpr const char* kWalls = "drive where the lidar sees walls on all sides";
+constexpr const char* kReadings =
+    "drive nearer to walls, and check what covers the lidar, range_min and range_max, and whether its driver "
+    "leaves readings out";
+constexpr const char* kBearings =
+    "check angle_min, angle_increment and the number of beams against the lidar's data sheet, and drive "
+    "where it sees walls on all sides";
+
 // --- Matches ---------------------------------------------------------------------------------------------
 
 double share_of_matches(const VerdictEvidence& evidence) {
@@ -147,6 +156,17 @@ std::string few_readings(std::size_t readings, std::size_t beams) {
   return ", with " + std::to_string(readings) + " of " + std::to_string(beams) + " readings a scan";
 }
 
+/// Walls are found among readings beside each other.
+bool are_too_thin(const VerdictEvidence& evidence) {
+  return evidence.too_thin > 0 && 2 * evidence.too_thin > evidence.unmatched;
+}
+
+std::string readings_text(const VerdictEvidence& evidence) {
+  if (!are_too_thin(evidence)) return few_readings(evidence.readings, evidence.beams);
+  return ", with " + std::to_string(evidence.readings) + " of " + std::to_string(evidence.beams) +
+         " readings a scan: too few beside each other for a wall";
+}
+
 /// Nothing where there are none.
 std::string while_it_stood(std::size_t pairs) {
   if (pairs == 0) return "";
@@ -159,8 +179,7 @@ std::string while_it_stood(std::size_t pairs) {
 std::string matches_text(const VerdictEvidence& evidence) {
   const std::string some = evidence.matched == 0 ? "none" : "only " + std::to_string(evidence.matched);
   return some + " of " + std::to_string(evidence.matched + evidence.unmatched + evidence.stood) +
-         " pairs of scans could be matched" + few_readings(evidence.readings, evidence.beams) +
-         while_it_stood(evidence.stood);
+         " pairs of scans could be matched" + readings_text(evidence) + while_it_stood(evidence.stood);
 }
 
 std::string parts_text(const VerdictEvidence& evidence) {
@@ -202,7 +221,6 @@ std::vector<Length> lengths_of(const Calibration& calibration, const VerdictEvid
   return lengths;
 }
 
-constexpr const char* kWalls = "drive where the lidar sees walls on all sides";
 constexpr const char* kCorrect =
     "correct robot.toml, or the recording, as the first reason says, and solve again";
 
@@ -210,6 +228,14 @@ std::string motion_for(BaseQuantity length, const VerdictEvidence& evidence) {
   if (evidence.missing_motion) return *evidence.missing_motion;
   return length == BaseQuantity::track_width ? "more turns on the spot, both ways"
                                              : "longer straight lines, forward and backward";
+}
+
+/// The remedy for a length that is not known, and the cause where the scans show it.
+std::pair<std::string, std::string> remedy_and_cause(BaseQuantity length, const VerdictEvidence& evidence) {
+  if (are_in_part(evidence)) return {kWalls, parts_text(evidence)};
+  if (share_of_matches(evidence) < settings::kWarnMatched)
+    return {remedy_for_readings(evidence).value_or(kBearings), matches_text(evidence)};
+  return {"record " + motion_for(length, evidence), ""};
 }
 
 /// A finding from few pairs may as well be a few failed matches.
@@ -231,10 +257,9 @@ Objections undetermined_lengths(const std::vector<Length>& lengths, const Verdic
     std::string reason = length.name + " " +
                          (length.measured < 1.0 ? "is determined to " + percent(length.measured) + " only"
                                                 : std::string("is not determined"));
-    reason += "; to fix that, ";
-    const std::string motion = "record " + motion_for(length.id, evidence);
-    reason += are_in_part(evidence) ? std::string(kWalls) + ": " + parts_text(evidence) : motion;
-    found.push_back(refusal(reason, (are_in_part(evidence) ? kWalls : motion) + ", and solve again"));
+    const auto [remedy, cause] = remedy_and_cause(length.id, evidence);
+    reason += "; to fix that, " + remedy + (cause.empty() ? "" : ": " + cause);
+    found.push_back(refusal(reason, remedy + ", and solve again"));
   }
   return found;
 }
@@ -369,9 +394,11 @@ Objections recordings_disagree(const Calibration&, const VerdictEvidence& eviden
 // --- Pairs -------------------------------------------------------------------------------------------------
 
 Objections unmatched_pairs(const Calibration&, const VerdictEvidence& evidence) {
-  const std::string finding = matches_text(evidence) + "; drive where the lidar sees walls on all sides";
-  if (has_few_matches(evidence)) return {refusal(finding)};
-  if (share_of_matches(evidence) < settings::kWarnMatched) return {warning(finding)};
+  const auto readings = remedy_for_readings(evidence);
+  const std::string finding = matches_text(evidence) + "; " + readings.value_or(kWalls);
+  const std::string step = readings ? *readings + ", and record again" : "";
+  if (has_few_matches(evidence)) return {refusal(finding, step)};
+  if (share_of_matches(evidence) < settings::kWarnMatched) return {warning(finding, step)};
   return {};
 }
 
@@ -573,6 +600,10 @@ constexpr std::array kRules = {
 std::optional<std::string> poor_matches(const VerdictEvidence& evidence) {
   if (evidence.unmatched + evidence.stood > 0 && has_few_matches(evidence)) return matches_text(evidence);
   return are_in_part(evidence) ? std::optional(parts_text(evidence)) : std::nullopt;
+}
+
+std::optional<std::string> remedy_for_readings(const VerdictEvidence& evidence) {
+  return are_too_thin(evidence) ? std::optional<std::string>(kReadings) : std::nullopt;
 }
 
 std::span<const VerdictRule> verdict_rules() { return kRules; }

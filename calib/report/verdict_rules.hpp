@@ -30,6 +30,9 @@ struct VerdictRule {
 /// are enough.
 std::optional<std::string> poor_matches(const VerdictEvidence& evidence);
 
+/// The remedy for scans with too few readings beside each other, where most pairs failed for that.
+std::optional<std::string> remedy_for_readings(const VerdictEvidence& evidence);
+
 /// Remedy where a recording lost much.
 inline constexpr const char* kMendLosses =
     "mend what sends these counts, stamps or scans: a second program on the topic, a counter that wraps "

@@ -269,6 +269,34 @@ TEST(Gate, says_of_lengths_by_hardly_any_match_only_that) {
   EXPECT_NE(gate.reasons[0].find(", with 24 of 361 readings a scan"), std::string::npos) << gate.reasons[0];
 }
 
+TEST(Gate, says_of_scans_with_too_few_readings_beside_each_other_what_to_look_at) {
+  VerdictEvidence evidence{true, 5, 120, {}};
+  evidence.readings = 90;
+  evidence.beams = 180;
+  evidence.too_thin = 60;
+  EXPECT_EQ(judge(sound(), evidence).reasons.at(0).find("90 of 180"), std::string::npos) << "of other causes";
+  evidence.too_thin = 61;
+  const GateResult gate = judge(sound(), evidence);
+  EXPECT_NE(gate.reasons.at(0).find("with 90 of 180 readings a scan: too few beside each other"),
+            std::string::npos)
+      << gate.reasons[0];
+  EXPECT_NE(gate.next_step.find("leaves readings out"), std::string::npos) << gate.next_step;
+}
+
+// Longer lines do not help where the scans are not what was seen.
+TEST(Gate, says_of_lengths_that_few_matches_leave_open_that_the_scans_do_not_match) {
+  Calibration calibration = sound();
+  calibration.parameters[0].second.std = 0.15 * calibration.parameters[0].second.value;
+  VerdictEvidence evidence{true, 49, 51, {}};
+  evidence.pairs = 49;
+  const GateResult gate = judge(calibration, evidence);
+  EXPECT_NE(gate.reasons.at(0).find("only 49 of 100 pairs"), std::string::npos) << gate.reasons[0];
+  EXPECT_NE(gate.reasons[0].find("angle_increment"), std::string::npos) << gate.reasons[0];
+  EXPECT_EQ(gate.reasons[0].find("straight lines"), std::string::npos) << gate.reasons[0];
+  evidence.matched = 50, evidence.unmatched = 50;
+  EXPECT_NE(judge(calibration, evidence).reasons.at(0).find("straight lines"), std::string::npos);
+}
+
 TEST(Gate, holds_each_length_to_its_own_nominal_value_where_there_is_one) {
   Calibration calibration = sound();
   calibration.robot.left_wheel_diameter = calibration.parameters[0].second.value = 0.12;
