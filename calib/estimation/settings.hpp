@@ -24,8 +24,8 @@ inline constexpr double kContradicts = 0.75, kAgrees = 0.9;
 /// Share of unexplained rotation that a mistake put right may leave. Chosen: no small gain names a mistake.
 inline constexpr double kLeftOver = 0.4;
 /// Part of the distance from the axle by which turns on the spot and the lidar may differ. Chosen: the closed
-/// form knows the lidar's y to some mm, its nominal y is measured with a tape.
-inline constexpr double kSameBeside = 0.3;
+/// form of a first look knows the lidar's y to a centimetre or two, its nominal y is measured with a tape.
+inline constexpr double kSameBeside = 0.5;
 /// m, of a motion of half a second whose direction is known, and share of the way that goes sideways of a
 /// robot that strafes. Chosen: matches are good to some mm; wheels slip by a few per cent.
 inline constexpr double kPlainWay_m = 0.02, kStrafes = 0.1;

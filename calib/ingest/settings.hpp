@@ -155,9 +155,10 @@ inline constexpr double kPlainlyTurned = 5.0;
 /// 0.005 in the same recordings; 0.1 with the yaw of a filter.
 inline constexpr double kAsideUnexplained = 0.03;
 
-/// rad, of a step that is part of a turn, and steps of turns to either side. Chosen: half a turn.
+/// rad, of a step that is part of a turn, and steps of turns to either side. Chosen: a quarter of a turn, in
+/// steps as above.
 inline constexpr double kTurnOfStep_rad = 0.02;
-inline constexpr std::size_t kFewestTurnSteps = 30;
+inline constexpr std::size_t kFewestTurnSteps = 15;
 /// Share of these that are turns on the spot, at least. Chosen: most drives have more.
 inline constexpr double kTurnsTogether = 0.25;
 /// Shares of the track: how far from the frame the centre of a turn on the spot lies at most; how far centres

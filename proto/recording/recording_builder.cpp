@@ -285,7 +285,9 @@ void RecordingBuilder::put_clocks_forward() {
     if (of != device && of != Device::gyro) return;
     const std::vector<SetBack> steps = set_back(stamps_in_order(samples));
     const std::vector<double> stamps = without_steps(stamps_in_order(samples), steps);
-    if (steps.empty() || stamps.back() - stamps.front() > kLongerThanWitness * witness->second.span) return;
+    if (steps.empty() || !std::all_of(stamps.begin(), stamps.end(), sane_time) ||
+        stamps.back() - stamps.front() > kLongerThanWitness * witness->second.span)
+      return;
     for (std::size_t k = 0; k < stamps.size(); ++k) samples[k].t = stamps[k];
     for (const SetBack& step : steps)
       if (!told && of == device)
