@@ -275,6 +275,9 @@ Calibration begun(const ingest::Recordings& recordings, std::span<const measurem
   calibration.data = data_use(recordings.view(), sets);
   calibration.discarded = left_out(recordings.view(), sets);
   calibration.repairs = repairs_of(recordings);
+  for (const Recording& recording : recordings.view())
+    calibration.recordings.push_back(
+        {recording.name, recording.robot.robot_id, std::nullopt, std::nullopt, {}});
   return calibration;
 }
 

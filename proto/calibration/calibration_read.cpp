@@ -345,11 +345,14 @@ bool is_set(const std::vector<Item>& member) {
   return !member.empty();
 }
 
-/// An addition that is not understood is no value, and stays in the file as it is.
+/// An addition that is not understood is no value, and stays in the file as it is. One of every file may be
+/// null or empty.
 template <typename Member>
 void read_addition(const Json& json, const fields::Field<Calibration, Member>& field, Calibration& out) {
   const auto found = json.find(std::string(field.key));
   if (found == json.end()) return;
+  const bool is_nothing = found->is_null() || (found->is_array() && found->empty());
+  if (is_nothing && field.about.presence == Presence::later) return;
   std::string problem;
   UnknownMembers unknown;
   Member& member = out.*field.member;

@@ -671,8 +671,8 @@ constexpr auto contract() {
              .presence = Presence::later})};
 }
 
-/// Members that say something in some files only. One that is not understood is as good as absent, and kept:
-/// a newer program's finding must not stop odometry.
+/// Members that say something in some files only, or came later. One that is not understood is as good as
+/// absent, and kept: a newer program's finding must not stop odometry.
 constexpr auto additions() {
   using C = Calibration;
   constexpr About kIfSet{.presence = Presence::if_set};
@@ -694,8 +694,8 @@ constexpr auto additions() {
              .form = Form::finite,
              .presence = Presence::if_set}),
       field("scale", &C::scale, kIfSet),
-      field("recordings", &C::recordings, kIfSet),
-      field("homogeneity", &C::homogeneity, {.form = Form::null_or_object, .presence = Presence::if_set}),
+      field("recordings", &C::recordings, {.presence = Presence::later}),
+      field("homogeneity", &C::homogeneity, {.form = Form::null_or_object, .presence = Presence::later}),
       field("settings", &C::settings, kIfSet),
       field("proof", &C::proof,
             {.meaning =

@@ -48,6 +48,15 @@ TEST(OneRobot, is_seen_in_recordings_of_one_robot) {
   EXPECT_FALSE(result.recordings.empty());
 }
 
+TEST(OneRobot, of_one_recording_is_not_tested_and_the_recording_is_named) {
+  const std::vector<Recording> recordings = {recorded(9, 1)};
+  const Calibration result = calib::solve(recordings, {});
+  EXPECT_FALSE(result.homogeneity);
+  ASSERT_EQ(result.recordings.size(), 1U);
+  EXPECT_EQ(result.recordings.front().file, recordings.front().name);
+  EXPECT_FALSE(result.recordings.front().parameters);
+}
+
 TEST(OneRobot, is_not_assumed_where_recordings_name_two) {
   const std::vector<Recording> recordings = {recorded(9, 1), recorded(5, 2)};
   const Calibration result = calib::solve(recordings, {});

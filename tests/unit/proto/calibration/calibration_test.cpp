@@ -117,6 +117,8 @@ TEST(CalibrationFile, of_before_is_read_without_what_was_left_out) {
   nlohmann::ordered_json old = nlohmann::ordered_json::parse(to_json(example()));
   old.erase("discarded");
   old.erase("repairs");
+  old.erase("recordings");
+  old.erase("homogeneity");
   const auto back = value_of(calibration_from_json(old.dump(), "test"));
   EXPECT_TRUE(back.discarded.empty());
   EXPECT_TRUE(back.repairs.empty());
@@ -140,6 +142,8 @@ TEST(CalibrationFile, has_the_members_of_the_format) {
   EXPECT_EQ(json["data"][0]["file"], "a.jsonl.gz");
   EXPECT_EQ(json["data"][0]["begin"], 1.5e9);
   EXPECT_EQ(json["zz_own"]["b"], 1);
+  EXPECT_TRUE(json["recordings"].is_array());
+  EXPECT_TRUE(json.contains("homogeneity") && json["homogeneity"].is_null()) << "of one recording";
 }
 
 TEST(CalibrationFile, writes_no_nan_and_no_infinity) {
