@@ -190,9 +190,11 @@ class Look {
   [[nodiscard]] std::optional<Cause> without_direction() const {
     const Direction counted = directions(recording_);
     if (counted.left.both() && counted.right.both()) return std::nullopt;
-    const auto given = counted_up(motions_, counted);
-    const auto mended = with_direction(given, counted, recording_.robot);
-    const std::size_t against = changed(given, mended, recording_.robot);
+    const auto against_of = [&](const std::vector<WheelMotion>& given) {
+      return changed(given, with_direction(given, counted, recording_.robot), recording_.robot);
+    };
+    // A robot that only turned on the spot one way counts up on one side and down on the other.
+    const std::size_t against = std::min(against_of(motions_), against_of(counted_up(motions_, counted)));
     const auto share = static_cast<double>(against) / std::max(static_cast<double>(motions_.size()), 1.0);
     if (share < settings::kAgainstCounting || against < settings::kFewestAgainstCounting) return std::nullopt;
     return Cause{one_way(counted) + ", although the " + reference() +

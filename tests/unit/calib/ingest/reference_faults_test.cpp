@@ -101,7 +101,7 @@ TEST(JoinedTurns, may_be_sweeps_of_a_lidar_that_does_not_see_all_round) {
     const auto joined = with_joined_turns(recording);
     ASSERT_TRUE(joined) << beams.size();
     ASSERT_EQ(joined->scans.size(), 30U) << beams.size();
-    EXPECT_EQ(joined->scans[7].ranges.size(), std::accumulate(beams.begin(), beams.end(), 0U));
+    EXPECT_EQ(joined->scans[7].ranges.size(), std::accumulate(beams.begin(), beams.end(), std::size_t{0}));
     EXPECT_EQ(joined->scans[7].t, recording.scans[7 * beams.size()].t);
     EXPECT_NEAR(joined->scans[7].time_increment.value_or(0.0), 0.1 / 360.0, beams.size() == 3 ? 1e-4 : 1e-9);
     EXPECT_TRUE(joined->discarded.empty());

@@ -132,9 +132,11 @@ TEST(Recording, is_told_from_pairs_of_scans_by_the_type_of_the_line_itself) {
         std::string(R"({"type":"scan","t":0,"ranges":[1,)")})
     EXPECT_TRUE(is_recording(line + "\n")) << line;
   for (const std::string& line :
-       {R"({"reference":)" + scan + R"(,"scan":)" + scan + "}", R"({"guess":[0,0,0],"scan":)" + scan + "}",
-        std::string(R"({"note":"type","a":["type"],"b":"\"type\":"})"), R"([)" + scan + "]"})
-    EXPECT_FALSE(is_recording(line + "\n" + scan + "\n")) << line;
+       {std::string(R"({"reference":)").append(scan).append(R"(,"scan":)").append(scan).append("}"),
+        std::string(R"({"guess":[0,0,0],"scan":)").append(scan).append("}"),
+        std::string(R"({"note":"type","a":["type"],"b":"\"type\":"})"),
+        std::string("[").append(scan).append("]")})
+    EXPECT_FALSE(is_recording(std::string(line).append("\n").append(scan).append("\n"))) << line;
 }
 
 TEST(Recording, notices_a_second_robot_of_the_same_sizes) {
