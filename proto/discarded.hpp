@@ -5,6 +5,9 @@
 #include <cstddef>
 #include <optional>
 #include <string>
+#include <utility>
+
+#include "proto/number_text.hpp"
 
 namespace odomcalib {
 
@@ -42,5 +45,16 @@ struct Repair {
   std::string chosen;  ///< what is used
   std::string reason;  ///< what of the recording speaks for it
 };
+
+/// Stamps of one stream that step against those of another: each side of the step gets its own offset.
+/// @param by s, positive where the clock was set ahead
+/// @param when s, with "about" where it is not seen
+/// @param set whose clock it was: "their clock was set"
+inline Repair repaired_clock(const std::string& whose, double by, const std::string& when,
+                             const std::string& against, const std::string& set) {
+  std::string reason = "stamps of the " + whose + " step by " + printed("%.2f", by) + " s at " + when;
+  reason += " s against those of the " + against + ": " + set;
+  return {kRepairedClock, "each side of the step with its own offset", std::move(reason)};
+}
 
 }  // namespace odomcalib

@@ -121,6 +121,11 @@ std::string Sha256::hex() {
   return hex;
 }
 
+bool is_absent(const std::filesystem::path& path) {
+  std::error_code unknown;
+  return std::filesystem::symlink_status(path, unknown).type() == std::filesystem::file_type::not_found;
+}
+
 std::string sha256_hex(std::string_view bytes) {
   Sha256 hash;
   hash.take(bytes);

@@ -22,6 +22,9 @@ Result<std::string> read_file_bytes(const std::filesystem::path& path);
 /// The same, handed over piece by piece; the first has two bytes at least where the file has them.
 Result<void> read_file_pieces(const std::filesystem::path& path, const TakePiece& take);
 
+/// Whether there is nothing of that name, not even a link that leads nowhere; false where nobody can tell.
+bool is_absent(const std::filesystem::path& path);
+
 /// SHA-256 as lower-case hex.
 std::string sha256_hex(std::string_view bytes);
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -73,5 +74,20 @@ struct IncrementSample {
   double left_speed = 0.0, right_speed = 0.0;  ///< mean wheel speeds, rad/s
   std::array<double, 3> lidar_motion{};        ///< x, y [m], yaw [rad] in the frame of the first scan
 };
+
+/// s, in the order of the samples.
+template <typename Sample>
+std::vector<double> stamps_of(const std::vector<Sample>& samples) {
+  std::vector<double> stamps;
+  stamps.reserve(samples.size());
+  for (const Sample& sample : samples) stamps.push_back(sample.t);
+  return stamps;
+}
+
+/// @param samples as many as stamps
+template <typename Sample>
+void set_stamps(std::vector<Sample>& samples, const std::vector<double>& stamps) {
+  for (std::size_t k = 0; k < samples.size(); ++k) samples[k].t = stamps[k];
+}
 
 }  // namespace odomcalib

@@ -7,7 +7,7 @@
 
 #include "calib/estimation/explained_rotation.hpp"
 #include "calib/estimation/settings.hpp"
-#include "calib/ingest/even_stamps.hpp"
+#include "calib/ingest/form.hpp"
 #include "calib/math/median.hpp"
 #include "calib/math/number_text.hpp"
 
@@ -20,10 +20,6 @@ struct Leap {
   double begin = 0.0;  ///< s, of the last sample before it
   double size = 0.0;   ///< s, by which the stamps after it are too late, if samples come as evenly as before
 };
-
-std::vector<double> stamps_of_reference(const Recording& recording) {
-  return recording.poses.empty() ? ingest::stamps_of(recording.scans) : ingest::stamps_of(recording.poses);
-}
 
 /// Whether a stream has samples in the time after an instant about as often as ever.
 bool goes_on(const std::vector<double>& times, double begin, double length, double usual) {
@@ -47,8 +43,8 @@ std::vector<Leap> gaps_of(const std::vector<double>& times, const std::vector<do
 }
 
 std::vector<Leap> gaps_of_one_stream(const Recording& recording) {
-  const std::vector<double> counts = ingest::stamps_of(recording.ticks);
-  const std::vector<double> reference = stamps_of_reference(recording);
+  const std::vector<double> counts = stamps_of(recording.ticks);
+  const std::vector<double> reference = ingest::stamps_of(recording, ingest::reference_of(recording));
   if (counts.size() < 2 || reference.size() < 2) return {};
   std::vector<Leap> gaps = gaps_of(counts, reference, true);
   const std::vector<Leap> more = gaps_of(reference, counts, false);
@@ -95,11 +91,9 @@ bool is_a_leap(const Recording& given, const Leap& leap) {
 }
 
 Repair repair_of(const Recording& recording, const Leap& leap) {
-  const std::string reference = recording.poses.empty() ? "scans" : "poses";
-  return {kRepairedClock, "each side of the step with its own offset",
-          "stamps of the " + (leap.of_counts ? "counts" : reference) + " step by " +
-              math::fixed(leap.size, 2) + " s at " + math::significant(leap.begin, 12) +
-              " s against those of the " + (leap.of_counts ? reference : "counts") + ": their clock was set"};
+  const std::string reference = many_of(ingest::reference_of(recording)), counts = "counts";
+  return repaired_clock(leap.of_counts ? counts : reference, leap.size, math::significant(leap.begin, 12),
+                        leap.of_counts ? reference : counts, "their clock was set");
 }
 
 }  // namespace

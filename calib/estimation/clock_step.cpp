@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "calib/estimation/settings.hpp"
-#include "calib/ingest/even_stamps.hpp"
 #include "calib/ingest/form.hpp"
 #include "calib/math/linear_solve.hpp"
 #include "calib/math/median.hpp"
@@ -207,12 +206,12 @@ Place place_of(const Recording& recording, const ClockStep& rough) {
   const double reach = settings::kMomentReach_s + std::abs(rough.size);
   const double least = settings::kShownPart * std::abs(rough.size);
   const bool ahead = rough.size > 0.0;
-  const auto form = recording.poses.empty() ? ingest::Form::scan : ingest::Form::pose;
-  const OddInterval of_reference = odd_interval(stamps_of(recording, form), rough.moment, reach, ahead);
+  const OddInterval of_reference =
+      odd_interval(stamps_of(recording, ingest::reference_of(recording)), rough.moment, reach, ahead);
   // Counts that were set ahead leave a gap between the last count before the step and the first after it.
   if (!ahead) {
     const OddInterval of_counts =
-        odd_interval(ingest::stamps_of(recording.ticks), rough.moment, reach, /*longer=*/true);
+        odd_interval(stamps_of(recording.ticks), rough.moment, reach, /*longer=*/true);
     if (of_counts.unlike > std::max(least, of_reference.unlike)) return {of_counts.begin, Shown::in_counts};
   }
   if (of_reference.unlike > least) return {of_reference.end, Shown::in_reference};
@@ -305,13 +304,10 @@ measurement::Dataset without_clock_steps(measurement::Dataset rough) {
     Recording& recording = repairs.own(i);
     const Place place = place_of(recording, *step);
     put_on_one_clock(recording, place, step->size);
-    const std::string whose = recording.poses.empty() ? "scans" : "poses";
     const std::string when = place.shown == Shown::nowhere ? "about " + math::fixed(place.moment, 0)
                                                            : math::significant(place.moment, 12);
-    recording.repairs.push_back({kRepairedClock, "each side of the step with its own offset",
-                                 "stamps of the " + whose + " step by " + math::fixed(step->size, 2) +
-                                     " s at " + when +
-                                     " s against those of the counts: one of the two clocks was set"});
+    recording.repairs.push_back(repaired_clock(many_of(ingest::reference_of(recording)), step->size, when,
+                                               "counts", "one of the two clocks was set"));
   }
   if (!repairs.any()) return rough;
   auto opened = measurement::open_dataset(std::move(repairs).take(rough.recordings.stamps()));

@@ -21,20 +21,6 @@ struct EvenStamps {
 /// @return nothing when there are fewer than 50, or when they are even to 0.3 ms
 std::optional<EvenStamps> even_stamps(const std::vector<double>& stamps);
 
-template <typename Sample>
-std::vector<double> stamps_of(const std::vector<Sample>& samples) {
-  std::vector<double> stamps;
-  stamps.reserve(samples.size());
-  for (const Sample& sample : samples) stamps.push_back(sample.t);
-  return stamps;
-}
-
-/// @param samples as many as stamps
-template <typename Sample>
-void set_stamps(std::vector<Sample>& samples, const std::vector<double>& stamps) {
-  for (std::size_t k = 0; k < samples.size(); ++k) samples[k].t = stamps[k];
-}
-
 /// Whether a reference is interrupted there.
 /// @param times s, in time order
 bool has_gap(const std::vector<double>& times, std::size_t from, std::size_t to);

@@ -30,6 +30,8 @@ Form motion_of(const Recording& recording) {
   return Form::ticks;
 }
 
+Form reference_of(const Recording& recording) { return recording.poses.empty() ? Form::scan : Form::pose; }
+
 std::vector<double> stamps_of(const Recording& recording, Form form) {
   switch (form) {
     case Form::ticks:

@@ -21,6 +21,9 @@ const char* many_of(Form form);
 /// The form that told the motion of the wheels.
 Form motion_of(const Recording& recording);
 
+/// The form that tells where the robot was: poses push out scans.
+Form reference_of(const Recording& recording);
+
 /// s, sorted, as recorded: of what counts were made of, not of the counts. Empty where the recording does not
 /// use that form.
 std::vector<double> stamps_of(const Recording& recording, Form form);

@@ -10,6 +10,7 @@
 #include "calib/math/median.hpp"
 #include "calib/math/number_text.hpp"
 #include "calib/math/se2.hpp"
+#include "proto/recording/scan_parts.hpp"
 
 namespace odomcalib::calib::ingest {
 namespace {
@@ -22,19 +23,11 @@ struct Part {
   bool is_grid = false;            ///< nothing is stated beam by beam
 };
 
-double step_between_beams(const Scan& scan) {
-  if (scan.angles.empty()) return scan.angle_increment;
-  double swept = 0.0;
-  for (std::size_t k = 1; k < scan.angles.size(); ++k)
-    swept += math::wrap_angle(scan.angle(k) - scan.angle(k - 1));
-  return scan.angles.size() < 2 ? 0.0 : swept / static_cast<double>(scan.angles.size() - 1);
-}
-
 Part part_of(const Scan& scan) {
   Part part;
   if (scan.ranges.empty()) return part;
   part.is_grid = scan.angles.empty() && scan.times.empty();
-  part.step = step_between_beams(scan);
+  part.step = mean_step(scan);
   part.width = std::abs(part.step) * static_cast<double>(scan.ranges.size());
   part.first = scan.angle(0);
   part.last = scan.angle(scan.ranges.size() - 1);
@@ -43,11 +36,11 @@ Part part_of(const Scan& scan) {
 
 /// Whether the first beam of one is the next after the last beam of the other, all the way round.
 bool goes_on(const Part& before, const Part& after) {
-  const double same = before.is_grid && after.is_grid ? settings::kSameStep : settings::kSameStepListed;
+  const double same = before.is_grid && after.is_grid ? settings::kSameStep : kSameStepOfParts;
   if (!(std::abs(before.step) > 0.0)) return false;
   if (std::abs(after.step - before.step) > same * std::abs(before.step)) return false;
   return std::abs(math::wrap_angle(after.first - before.last - before.step)) <
-         settings::kNextBeam * std::abs(before.step);
+         kNextBeamOfParts * std::abs(before.step);
 }
 
 bool begins_at(const Part& part, double bearing) {

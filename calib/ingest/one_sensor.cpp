@@ -11,6 +11,7 @@
 #include "calib/ingest/settings.hpp"
 #include "calib/math/median.hpp"
 #include "calib/math/number_text.hpp"
+#include "proto/recording/scan_parts.hpp"
 
 namespace odomcalib::calib::ingest {
 namespace {
@@ -44,10 +45,8 @@ struct Grid {
 Grid grid_of(const Recording& recording) {
   std::vector<double> beams, steps;
   for (const Scan& scan : recording.scans) {
-    const std::size_t count = scan.ranges.size();
-    beams.push_back(static_cast<double>(count));
-    steps.push_back(count > 1 ? (scan.angle(count - 1) - scan.angle(0)) / static_cast<double>(count - 1)
-                              : 0.0);
+    beams.push_back(static_cast<double>(scan.ranges.size()));
+    steps.push_back(mean_step(scan));
   }
   return {math::median_of(std::move(beams)), math::median_of(std::move(steps))};
 }

@@ -49,17 +49,11 @@ inline constexpr double kAllRoundScan_rad = 6.1;
 /// Turns, of angles that look like degrees. Chosen, insensitive.
 inline constexpr double kTurnsInDegrees = 4.0;
 
-// --- Parts of turns, repeated scans, beams of a wandering head
-// --------------------------------------------------
+// --- Parts of turns, repeated scans, beams of a wandering head -------------------------------------------
 
 /// Relative difference of the steps from beam to beam of two scans, by rounding. Derived: of single
 /// precision.
 inline constexpr double kSameStep = 1e-4;
-/// The same where bearings are stated beam by beam. Chosen: the speed of a head wanders by some per cent.
-inline constexpr double kSameStepListed = 0.1;
-/// Steps, by which the first beam of a part may miss the one after the last beam of the part before. Chosen,
-/// insensitive.
-inline constexpr double kNextBeam = 0.6;
 /// Scans that a judgement on the whole stream takes. Chosen, insensitive.
 inline constexpr std::size_t kFewestParts = 20;
 /// Parts that make a turn, at least: of fewer, a scan is nearly a turn. Chosen, insensitive.

@@ -11,6 +11,7 @@
 #include "calib/matching/surface.hpp"
 #include "calib/math/median.hpp"
 #include "calib/math/se2.hpp"
+#include "proto/recording/scan_parts.hpp"
 
 namespace odomcalib::calib::ingest {
 namespace {
@@ -42,12 +43,8 @@ double turn_of_head(const Scan& scan) {
 }
 
 /// Angle from one beam to the next in the mean, rad; 0 with less than two.
-double mean_step(const Scan& scan) {
-  if (scan.ranges.size() < 2) return 0.0;
-  double swept = 0.0;  // angles that are stated beam by beam may start again at half a turn
-  for (std::size_t k = 1; k < scan.ranges.size(); ++k)
-    swept += math::wrap_angle(scan.angle(k) - scan.angle(k - 1));
-  return std::abs(swept) / static_cast<double>(scan.ranges.size() - 1);
+double step_size(const Scan& scan) {
+  return scan.ranges.size() < 2 ? 0.0 : std::abs(math::wrap_angle(mean_step(scan)));
 }
 
 }  // namespace
@@ -72,12 +69,12 @@ Recordings stamped_in_the_middle(const Recordings& sweeping) {
 }
 
 bool overstates_a_turn(const Scan& scan) {
-  const double step = mean_step(scan);
+  const double step = step_size(scan);
   return step * static_cast<double>(scan.ranges.size()) >= 2.0 * math::kPi + 0.5 * step;
 }
 
 bool sees_all_round(const Scan& scan) {
-  return mean_step(scan) * static_cast<double>(scan.ranges.size()) > settings::kAllRoundScan_rad &&
+  return step_size(scan) * static_cast<double>(scan.ranges.size()) > settings::kAllRoundScan_rad &&
          !overstates_a_turn(scan);
 }
 

@@ -36,7 +36,7 @@ Eigen::Vector3d error_of(const SensorPair& pair, const math::Pose& predicted) {
 std::optional<ingest::EvenStamps> even_scans(const Recording& recording, const FitData& data,
                                              const vehicle::EffectList& effects,
                                              const Eigen::VectorXd& parameters) {
-  const std::vector<double> given = ingest::stamps_of(recording.scans);
+  const std::vector<double> given = stamps_of(recording.scans);
   auto even = ingest::even_stamps(given);
   if (!even) return std::nullopt;
   std::vector<vehicle::Interval> intervals;

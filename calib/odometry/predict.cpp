@@ -14,7 +14,7 @@ std::vector<PoseSample> predict(const Recording& recording, const Calibration& c
   Recording counted;
   counted.robot = recording.robot;
   counted.ticks = recording.ticks;
-  if (const auto even = ingest::even_ticks(recording)) ingest::set_stamps(counted.ticks, even->t);
+  if (const auto even = ingest::even_ticks(recording)) set_stamps(counted.ticks, even->t);
   const wheels::WheelTrack track = wheels::wheel_track_from_ticks(counted);
   if (track.empty()) return poses;
   const DriveClock clock(calibration, track.t.front());

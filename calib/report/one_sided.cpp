@@ -4,7 +4,7 @@
 #include <cstdlib>
 #include <utility>
 
-#include "calib/ingest/even_stamps.hpp"
+#include "calib/ingest/form.hpp"
 #include "calib/ingest/settings.hpp"
 #include "calib/report/settings.hpp"
 
@@ -33,8 +33,8 @@ std::vector<Discarded> where_many(Discarded one, double share) {
 }
 
 std::vector<Discarded> without_counts(const Recording& recording, const std::vector<double>& reference) {
-  const std::vector<double> counts = ingest::stamps_of(recording.ticks);
-  Discarded one{.what = recording.poses.empty() ? "scan" : "pose",
+  const std::vector<double> counts = stamps_of(recording.ticks);
+  Discarded one{.what = name_of(ingest::reference_of(recording)),
                 .reason = "no counts at that time",
                 .of = reference.size()};
   for (const double t : reference) {
@@ -47,7 +47,8 @@ std::vector<Discarded> without_counts(const Recording& recording, const std::vec
 std::vector<Discarded> without_reference(const Recording& recording, const std::vector<double>& reference) {
   const std::vector<TickSample>& ticks = recording.ticks;
   Discarded one{.what = "counts",
-                .reason = recording.poses.empty() ? "no scans at that time" : "no poses at that time",
+                .reason = ingest::reference_of(recording) == ingest::Form::pose ? "no poses at that time"
+                                                                                : "no scans at that time",
                 .of = ticks.size()};
   double turned = 0.0, unseen = 0.0;  // counts of both wheels
   for (std::size_t k = 1; k < ticks.size(); ++k) {
@@ -65,8 +66,7 @@ std::vector<Discarded> without_reference(const Recording& recording, const std::
 }  // namespace
 
 std::vector<Discarded> one_sided(const Recording& recording) {
-  const std::vector<double> reference =
-      recording.poses.empty() ? ingest::stamps_of(recording.scans) : ingest::stamps_of(recording.poses);
+  const std::vector<double> reference = ingest::stamps_of(recording, ingest::reference_of(recording));
   if (recording.ticks.size() < 2 || reference.size() < 2) return {};
   std::vector<Discarded> all = without_counts(recording, reference);
   const std::vector<Discarded> more = without_reference(recording, reference);

@@ -20,7 +20,7 @@ std::optional<ingest::Recordings> with_even_scans(const estimation::Fit& fit) {
   for (std::size_t i = 0; i < given.size(); ++i) {
     const auto even = even_scans(given[i], fit.dataset.data[i], fit.model.effects, fit.model.parameters);
     if (!even) continue;
-    ingest::set_stamps(repairs.own(i).scans, even->t);
+    set_stamps(repairs.own(i).scans, even->t);
     stamps.scans = std::max(stamps.scans, even->jitter);
   }
   if (!repairs.any()) return std::nullopt;

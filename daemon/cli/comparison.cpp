@@ -9,7 +9,7 @@
 #include <utility>
 
 #include "daemon/cli/settings.hpp"
-#include "proto/number_from.hpp"
+#include "proto/number_text.hpp"
 
 namespace odomcalib::cli {
 namespace {

@@ -15,7 +15,7 @@
 
 #include "daemon/cli/exit_codes.hpp"
 #include "daemon/cli/settings.hpp"
-#include "proto/number_from.hpp"
+#include "proto/number_text.hpp"
 
 namespace odomcalib::cli {
 namespace {

@@ -10,7 +10,7 @@
 #include <system_error>
 
 #include "proto/file_bytes.hpp"
-#include "proto/number_from.hpp"
+#include "proto/number_text.hpp"
 
 namespace odomcalib::cli {
 namespace {

@@ -18,7 +18,7 @@
 #include "daemon/routines/settings.hpp"
 #include "proto/angles.hpp"
 #include "proto/file_bytes.hpp"
-#include "proto/number_from.hpp"
+#include "proto/number_text.hpp"
 
 namespace odomcalib::cli {
 namespace {

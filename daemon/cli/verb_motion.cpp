@@ -22,7 +22,7 @@
 #include "proto/calibration/calibration.hpp"
 #include "proto/calibration/report_data.hpp"
 #include "proto/file_bytes.hpp"
-#include "proto/number_from.hpp"
+#include "proto/number_text.hpp"
 
 namespace odomcalib::cli {
 namespace {

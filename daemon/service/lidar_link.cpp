@@ -4,7 +4,7 @@
 
 #include "daemon/service/settings.hpp"
 #include "drivers/tcp/tcp_stream.hpp"
-#include "proto/number_from.hpp"
+#include "proto/number_text.hpp"
 
 namespace odomcalib {
 namespace {

@@ -89,11 +89,6 @@ std::size_t visit_lines(const std::string& bytes, Visit visit, JournalDamage& da
 
 std::filesystem::path older_file(const std::filesystem::path& path) { return path.string() + ".1"; }
 
-bool is_absent(const std::filesystem::path& path) {
-  std::error_code unknown;
-  return std::filesystem::symlink_status(path, unknown).type() == std::filesystem::file_type::not_found;
-}
-
 }  // namespace
 
 std::string name_of(JournalState state) { return kNames.at(static_cast<std::size_t>(state)); }

@@ -9,7 +9,7 @@
 #include <utility>
 
 #include "drivers/can/settings.hpp"
-#include "proto/number_from.hpp"
+#include "proto/number_text.hpp"
 
 namespace odomcalib::drivers {
 namespace {

@@ -3,7 +3,7 @@
 #include "drivers/can/slcan.hpp"
 #include "drivers/can/socketcan.hpp"
 #include "drivers/serial/port.hpp"
-#include "proto/number_from.hpp"
+#include "proto/number_text.hpp"
 
 namespace odomcalib::drivers {
 namespace {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <string_view>
 
-#include "proto/number_from.hpp"
+#include "proto/number_text.hpp"
 
 namespace odomcalib::drivers {
 namespace {

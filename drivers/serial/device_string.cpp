@@ -3,7 +3,7 @@
 #include <initializer_list>
 
 #include "drivers/serial/port.hpp"
-#include "proto/number_from.hpp"
+#include "proto/number_text.hpp"
 
 namespace odomcalib::drivers {
 namespace {

@@ -5,7 +5,7 @@
 #include <string_view>
 
 #include "proto/calibration/calibration.hpp"
-#include "proto/number_from.hpp"
+#include "proto/number_text.hpp"
 
 namespace odomcalib {
 namespace {

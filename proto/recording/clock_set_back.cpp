@@ -6,7 +6,7 @@
 namespace odomcalib {
 namespace {
 
-// Samples on either side that a step needs. Chosen, insensitive.
+// Samples on either side that a step needs. Chosen: of two, one may have come late.
 constexpr std::size_t kFewest = 3;
 // Share of as many samples as fit into the time by which a clock was set back, that lie in that time: on
 // either side of the step. Derived: where a block of m samples comes before the n that belong there, it is

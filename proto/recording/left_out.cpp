@@ -3,8 +3,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdio>
 #include <string_view>
+
+#include "proto/number_text.hpp"
 
 namespace odomcalib {
 namespace {
@@ -35,12 +36,6 @@ const Kind* kind_of(const Discarded& one) {
   const auto* found =
       std::find_if(kKinds.begin(), kKinds.end(), [&](const Kind& kind) { return kind.what == one.what; });
   return found == kKinds.end() ? nullptr : found;
-}
-
-std::string printed(const char* format, double value) {
-  std::array<char, 40> text{};
-  std::snprintf(text.data(), text.size(), format, value);
-  return text.data();
 }
 
 /// Two digits tell a second from another; whole seconds are enough later on.

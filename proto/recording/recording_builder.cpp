@@ -3,13 +3,13 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdio>
 #include <cstdlib>
 #include <limits>
 #include <set>
 #include <type_traits>
 #include <utility>
 
+#include "proto/number_text.hpp"
 #include "proto/recording/clock_set_back.hpp"
 #include "proto/recording/scan_checks.hpp"
 #include "proto/recording/scan_parts.hpp"
@@ -25,7 +25,7 @@ constexpr double kReorderWindow = 1.0;  // s, DESIGN 4.2: out of order by up to 
 constexpr double kLeap = 60.0;          // s, a longer step ahead is believed when the next sample confirms it
 constexpr double kLatestTime =
     9e9;  // s; as nanoseconds it still fits 64 bits, and is later than any clock shows
-// Samples of a stream that tells that time went on. Chosen, insensitive.
+// Samples of a stream that tells that time went on. Chosen: a second or two of most devices.
 constexpr std::size_t kFewestOfWitness = 20;
 // Span of a stream whose clock was put forward over that of the witness: longer ones are recordings of which
 // only one has the witness, one after the other. Chosen: recorders start and end apart.
@@ -71,20 +71,6 @@ bool says_the_same(const PoseSample& a, const PoseSample& b) {
 }
 bool says_the_same(const GyroSample& a, const GyroSample& b) { return a.yaw_rate == b.yaw_rate; }
 bool says_the_same(const Scan& a, const Scan& b) { return a.ranges == b.ranges; }
-
-std::string formatted(const char* format, double value) {
-  std::array<char, 40> text{};
-  std::snprintf(text.data(), text.size(), format, value);
-  return text.data();
-}
-
-template <typename Sample>
-std::vector<double> stamps_in_order(const std::vector<Sample>& samples) {
-  std::vector<double> stamps;
-  stamps.reserve(samples.size());
-  for (const Sample& sample : samples) stamps.push_back(sample.t);
-  return stamps;
-}
 
 /// A stream whose clock was not set.
 struct Witness {
@@ -268,7 +254,7 @@ void RecordingBuilder::put_clocks_forward() {
   std::map<Device, Witness> steady;
   each_stream([&](Device device, const char* many, const auto& samples) {
     if (device == Device::gyro || samples.size() < kFewestOfWitness) return;
-    const std::vector<double> stamps = stamps_in_order(samples);
+    const std::vector<double> stamps = stamps_of(samples);
     const auto [first, last] = std::minmax_element(stamps.begin(), stamps.end());
     if (!set_back(stamps).empty())
       set_back_devices.insert(device);
@@ -283,19 +269,17 @@ void RecordingBuilder::put_clocks_forward() {
   bool told = false;
   each_stream([&](Device of, const char* many, auto& samples) {
     if (of != device && of != Device::gyro) return;
-    const std::vector<SetBack> steps = set_back(stamps_in_order(samples));
-    const std::vector<double> stamps = without_steps(stamps_in_order(samples), steps);
+    const std::vector<double> given = stamps_of(samples);
+    const std::vector<SetBack> steps = set_back(given);
+    const std::vector<double> stamps = without_steps(given, steps);
     if (steps.empty() || !std::all_of(stamps.begin(), stamps.end(), sane_time) ||
         stamps.back() - stamps.front() > kLongerThanWitness * witness->second.span)
       return;
-    for (std::size_t k = 0; k < stamps.size(); ++k) samples[k].t = stamps[k];
+    set_stamps(samples, stamps);
     for (const SetBack& step : steps)
       if (!told && of == device)
-        recording_.repairs.push_back(
-            {kRepairedClock, "each side of the step with its own offset",
-             "stamps of the " + std::string(many) + " step by " + formatted("%.2f", -step.by) + " s at " +
-                 formatted("%.12g", stamps[step.first]) + " s against those of the " + witness->second.many +
-                 ": their clock was set back"});
+        recording_.repairs.push_back(repaired_clock(many, -step.by, printed("%.12g", stamps[step.first]),
+                                                    witness->second.many, "their clock was set back"));
     told = told || of == device;
   });
 }

@@ -13,13 +13,6 @@ constexpr double kTurn = 2.0 * std::numbers::pi;  // rad
 /// rad, to the nearest of equal directions.
 double apart(double angle) { return std::remainder(angle, kTurn); }
 
-double step_of(const Scan& scan) {
-  if (scan.angles.empty()) return scan.angle_increment;
-  double swept = 0.0;
-  for (std::size_t k = 1; k < scan.angles.size(); ++k) swept += apart(scan.angle(k) - scan.angle(k - 1));
-  return scan.angles.size() < 2 ? 0.0 : swept / static_cast<double>(scan.angles.size() - 1);
-}
-
 bool times_go_on(const Scan& before, const Scan& after) {
   if (before.times.empty() || after.times.empty()) return before.times.empty() && after.times.empty();
   return after.times.front() > before.times.back();
@@ -29,8 +22,8 @@ bool goes_on(const Scan& before, const Scan& after) {
   if (before.t != after.t || before.sensor != after.sensor || before.ranges.empty() || after.ranges.empty())
     return false;
   if (before.angles.empty() != after.angles.empty() || !times_go_on(before, after)) return false;
-  const double step = step_of(before), size = std::abs(step);
-  if (!(size > 0.0) || std::abs(step_of(after) - step) > kSameStepOfParts * size) return false;
+  const double step = mean_step(before), size = std::abs(step);
+  if (!(size > 0.0) || std::abs(mean_step(after) - step) > kSameStepOfParts * size) return false;
   const double beams = static_cast<double>(before.ranges.size()) + static_cast<double>(after.ranges.size());
   if (beams * size > kTurn + 0.5 * size) return false;
   return std::abs(apart(after.angle(0) - before.angle(before.ranges.size() - 1) - step)) <
@@ -54,6 +47,13 @@ void append(Scan& scan, const Scan& part) {
 }
 
 }  // namespace
+
+double mean_step(const Scan& scan) {
+  if (scan.angles.empty()) return scan.angle_increment;
+  double swept = 0.0;
+  for (std::size_t k = 1; k < scan.angles.size(); ++k) swept += apart(scan.angle(k) - scan.angle(k - 1));
+  return scan.angles.size() < 2 ? 0.0 : swept / static_cast<double>(scan.angles.size() - 1);
+}
 
 std::size_t join_parts_of_one_stamp(std::vector<Scan>& scans) {
   if (scans.empty()) return 0;

@@ -47,9 +47,7 @@ void take_member(const json& body, const char* name, T& value, bool& wrong) {
 
 RunRecord run_record_of(const std::filesystem::path& file) {
   RunRecord left;
-  std::error_code unknown;
-  if (std::filesystem::symlink_status(file, unknown).type() == std::filesystem::file_type::not_found)
-    return left;
+  if (is_absent(file)) return left;
   const auto bytes = read_file_bytes(file);
   if (!bytes) {
     left.damage = damaged_record(file, "cannot be read: " + bytes.error().what);

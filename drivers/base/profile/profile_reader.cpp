@@ -3,7 +3,7 @@
 #include <cmath>
 #include <sstream>
 
-#include "proto/number_from.hpp"
+#include "proto/number_text.hpp"
 
 namespace odomcalib::drivers {
 namespace {

@@ -61,8 +61,8 @@ TEST_P(ClockStep, leaves_stamps_that_advance_and_says_by_how_much_they_stepped) 
   const Recording recording = drive_with_step(whose, size);
   const measurement::Dataset dataset = put_right(recording);
   const Recording& mended = dataset.recordings.front();
-  EXPECT_TRUE(stamps_advance(ingest::stamps_of(mended.poses)));
-  EXPECT_TRUE(stamps_advance(ingest::stamps_of(mended.ticks)));
+  EXPECT_TRUE(stamps_advance(stamps_of(mended.poses)));
+  EXPECT_TRUE(stamps_advance(stamps_of(mended.ticks)));
   const std::string said = said_of(mended);
   const bool of_counts = said.find("of the counts step") != std::string::npos;
   const bool ahead = (of_counts == (whose == Whose::counts)) == (size > 0.0);

@@ -5,6 +5,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string>
+#include <vector>
 
 #include "calib/report/left_out.hpp"
 
@@ -28,16 +30,21 @@ void cut_out(std::vector<Sample>& samples, double begin, double end) {
   std::erase_if(samples, [&](const Sample& sample) { return sample.t > begin && sample.t < end; });
 }
 
+/// Only one finding, of about so many samples.
+void expect_one(const std::vector<Discarded>& all, const std::string& what, const std::string& reason,
+                double count, double by) {
+  ASSERT_EQ(all.size(), 1U);
+  EXPECT_EQ(all.front().what, what);
+  EXPECT_EQ(all.front().reason, reason);
+  EXPECT_NEAR(static_cast<double>(all.front().count), count, by);
+}
+
 TEST(OneSided, is_nothing_of_a_whole_drive) { EXPECT_TRUE(one_sided(whole_drive()).empty()); }
 
 TEST(OneSided, are_scans_without_counts) {
   Recording recording = whole_drive();
   cut_out(recording.ticks, 30.0, 70.0);
-  const auto all = one_sided(recording);
-  ASSERT_EQ(all.size(), 1U);
-  EXPECT_EQ(all.front().what, "scan");
-  EXPECT_EQ(all.front().reason, "no counts at that time");
-  EXPECT_NEAR(static_cast<double>(all.front().count), 400.0, 2.0);
+  expect_one(one_sided(recording), "scan", "no counts at that time", 400.0, 2.0);
   const auto losses = losses_of({&recording, 1});
   ASSERT_EQ(losses.size(), 1U);
   EXPECT_NEAR(losses.front().share, 0.4, 0.01);
@@ -55,11 +62,7 @@ TEST(OneSided, are_scans_before_the_first_count_and_after_the_last) {
 TEST(OneSided, are_counts_without_scans) {
   Recording recording = whole_drive();
   cut_out(recording.scans, 30.0, 70.0);
-  const auto all = one_sided(recording);
-  ASSERT_EQ(all.size(), 1U);
-  EXPECT_EQ(all.front().what, "counts");
-  EXPECT_EQ(all.front().reason, "no scans at that time");
-  EXPECT_NEAR(static_cast<double>(all.front().count), 2000.0, 5.0);
+  expect_one(one_sided(recording), "counts", "no scans at that time", 2000.0, 5.0);
 }
 
 TEST(OneSided, is_no_part_that_is_small) {
