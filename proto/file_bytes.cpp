@@ -276,7 +276,13 @@ std::filesystem::path behind_links(std::filesystem::path path) {
 
 namespace {
 
-enum class OutputKind { replaced, written_to };
+enum class OutputKind { replaced, written_to, standard_output };
+
+/// Whether the file takes what this program prints: `>> log`. To replace it would lose what is in it already.
+bool takes_standard_output(const struct stat& info) {
+  struct stat output {};
+  return ::fstat(STDOUT_FILENO, &output) == 0 && output.st_dev == info.st_dev && output.st_ino == info.st_ino;
+}
 
 Result<OutputKind> kind_of_output(const std::filesystem::path& path) {
   struct stat info {};
@@ -284,7 +290,8 @@ Result<OutputKind> kind_of_output(const std::filesystem::path& path) {
     if (errno == ENOENT) return OutputKind::replaced;
     return io_error("cannot write", path, "check the name and the permissions");
   }
-  if (S_ISREG(info.st_mode)) return OutputKind::replaced;
+  if (S_ISREG(info.st_mode))
+    return takes_standard_output(info) ? OutputKind::standard_output : OutputKind::replaced;
   if (S_ISCHR(info.st_mode) || S_ISBLK(info.st_mode) || S_ISFIFO(info.st_mode)) return OutputKind::written_to;
   return Error{ErrorCode::io, S_ISDIR(info.st_mode) ? "is a folder" : "is no regular file", path.string(),
                "name a file"};
@@ -297,18 +304,25 @@ Result<void> write_into(const std::filesystem::path& path, std::string_view byte
   return {};
 }
 
+Result<void> write_to_standard_output(const std::filesystem::path& path, std::string_view bytes) {
+  if (!write_all(STDOUT_FILENO, bytes)) return io_error("cannot write", path);
+  return {};
+}
+
 }  // namespace
 
 Result<void> write_output(const std::filesystem::path& path, std::string_view bytes) {
   const auto kind = kind_of_output(path);
   if (!kind) return kind.error();
   if (kind.value() == OutputKind::written_to) return write_into(path, bytes);
+  if (kind.value() == OutputKind::standard_output) return write_to_standard_output(path, bytes);
   return replace_file(behind_links(path), bytes);
 }
 
 Result<void> check_output(const std::filesystem::path& path) {
   const auto kind = kind_of_output(path);
   if (!kind) return kind.error();
+  if (kind.value() == OutputKind::standard_output) return {};
   if (kind.value() == OutputKind::written_to) {
     if (::access(path.c_str(), W_OK) == 0) return {};
     return io_error("cannot write", path, "check the permissions");

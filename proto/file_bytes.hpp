@@ -101,8 +101,9 @@ Result<void> replace_file(const std::filesystem::path& path, std::string_view by
 /// The path behind a chain of symbolic links, whether there is something at its end or not.
 std::filesystem::path behind_links(std::filesystem::path path);
 
-/// Writes where a user wants it: the file behind a link is replaced as above and the link stays; a device or
-/// a FIFO takes the bytes; anything else that is no regular file is refused. Error: io.
+/// Writes where a user wants it: the file behind a link is replaced as above and the link stays; a device, a
+/// FIFO and the file that standard output goes to take the bytes; anything else that is no regular file is
+/// refused. Error: io.
 Result<void> write_output(const std::filesystem::path& path, std::string_view bytes);
 
 /// Whether write_output may write there, as far as can be told before it does: nothing is changed. Error: io.

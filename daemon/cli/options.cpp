@@ -14,8 +14,8 @@ namespace {
 namespace fs = std::filesystem;
 
 /// Whether the path leads to this program's standard output by name: /dev/stdout, /dev/fd/1. Another name of
-/// the same terminal or file is not what the user asked for.
-bool is_standard_output(fs::path path) {
+/// the same terminal is not what the user asked for.
+bool names_standard_output(fs::path path) {
   constexpr int kMostLinks = 40;  // as the kernel
   std::error_code error;
   const fs::path standard = fs::canonical("/proc/self/fd", error) / "1";
@@ -26,6 +26,12 @@ bool is_standard_output(fs::path path) {
     if (!error) path = path.parent_path() / target;
   }
   return !error && path == standard;
+}
+
+bool is_standard_output(const fs::path& path) {
+  std::error_code error;
+  return names_standard_output(path) ||
+         (fs::is_regular_file(path, error) && fs::equivalent(path, "/proc/self/fd/1", error));
 }
 
 /// Anything but a regular file (a terminal, /dev/null) loses nothing when it is named twice.

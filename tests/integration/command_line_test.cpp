@@ -168,6 +168,18 @@ TEST_F(CommandLine, a_result_on_standard_output_stands_there_alone_and_the_summa
   EXPECT_THAT(usual.out, HasSubstr("101 poses"));
 }
 
+TEST_F(CommandLine, a_result_is_added_to_the_file_that_standard_output_is_added_to) {
+  for (const std::string name : {"/dev/stdout", "log"}) {
+    write("log", "kept\n");
+    const Outcome got = ctl("predict drive.jsonl --calibration nominal --trajectory " + name + " >> log");
+    EXPECT_EQ(got.status, 0) << got.err;
+    const std::string log = read("log");
+    EXPECT_TRUE(log.starts_with("kept\n")) << log.substr(0, 200);
+    EXPECT_EQ(std::count(log.begin(), log.end(), '\n'), 102) << log;
+    EXPECT_THAT(got.err, HasSubstr("101 poses"));
+  }
+}
+
 TEST_F(CommandLine, a_folder_that_is_not_there_is_told_before_the_daemon_is_asked_to_move) {
   const auto got = ctl("--socket /nonexistent/control calibrate --yes --out absent/cal.json");
   EXPECT_EQ(got.status, 1) << got.err;
