@@ -8,6 +8,7 @@
 #include "calib/estimation/settings.hpp"
 #include "calib/math/linear_solve.hpp"
 #include "calib/math/median.hpp"
+#include "calib/math/settings.hpp"
 
 namespace odomcalib::calib::estimation {
 namespace {
@@ -187,7 +188,7 @@ std::string percent_off(double scale) {
 }
 
 bool is_about(double scale, double expected) {
-  return std::abs(scale / expected - 1.0) < settings::kGyroPlain * settings::kGyroScale;
+  return std::abs(scale / expected - 1.0) < math::settings::kClearSigmas * settings::kGyroScale;
 }
 
 /// Fault of a gyro that reads this.
@@ -337,7 +338,8 @@ bool contradicts(const Update& update, const Eigen::VectorXd& before, const Eige
   for (const Eigen::Index k : {vehicle::kLeftRadius, vehicle::kRightRadius, vehicle::kTrackWidth}) {
     const double gained = covariance(k, k) - update.covariance(k, k);
     const double moved = update.change(k) - before(k);
-    if (gained > 0.0 && moved * moved > settings::kGyroPlain * settings::kGyroPlain * gained) return true;
+    if (gained > 0.0 && moved * moved > math::settings::kClearSigmas * math::settings::kClearSigmas * gained)
+      return true;
   }
   return false;
 }

@@ -162,9 +162,6 @@ inline constexpr std::size_t kMostLeaps = 6;
 
 /// Relative deviation of the scale of a MEMS gyro. Published: +-3 % (MPU-6050, product specification).
 inline constexpr double kGyroScale = 0.03;
-/// Standard deviations at which a gyro's scale is another, or its turns contradict the lidar's. Chosen,
-/// insensitive.
-inline constexpr double kGyroPlain = 4.0;
 /// rad/s, deviation of a gyro's bias before anything is known. Chosen; the same specification states +-20
 /// deg/s.
 inline constexpr double kGyroBias = 0.1;

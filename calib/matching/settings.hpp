@@ -92,8 +92,6 @@ inline constexpr double kMostRangeNoise_m = 5e-2;
 inline constexpr double kUsualRangeNoise_m = 1e-2;
 /// m, angular error of beams and unevenness of surfaces. Chosen, sensitive.
 inline constexpr double kBeamFloor_m = 1e-3;
-/// Standard deviations of a noise that grows with the range. Chosen, insensitive.
-inline constexpr double kCertainSlope = 4.0;
 /// Share of the range: some lidars' noise grows with it. Chosen, insensitive.
 inline constexpr double kNoiseAfar = 0.03;
 /// rad, to either side, over which the bends are taken that show the noise of the ranges. Chosen: corners and

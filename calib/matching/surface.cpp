@@ -7,6 +7,7 @@
 
 #include "calib/matching/settings.hpp"
 #include "calib/math/median.hpp"
+#include "calib/math/settings.hpp"
 #include "calib/math/vector2.hpp"
 
 namespace odomcalib::calib::matching {
@@ -205,7 +206,7 @@ double reference_time(const Scan& scan) {
 
 double far_limit(double range_max, double range_noise) {
   if (!(range_max > 0.0)) return std::numeric_limits<double>::infinity();
-  return range_max - std::max(settings::kCertainSlope * range_noise, settings::kNoiseAfar * range_max);
+  return range_max - std::max(math::settings::kClearSigmas * range_noise, settings::kNoiseAfar * range_max);
 }
 
 Surface make_surface(const Scan& scan, const BeamMotion& motion, double range_noise) {

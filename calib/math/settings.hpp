@@ -4,9 +4,16 @@
 
 namespace odomcalib::calib::math::settings {
 
+// --- Significance ------------------------------------------------------------------------------------------
+
+/// Standard deviations beyond which an estimate is not zero, and two estimates are not the same. Chosen: of
+/// normal errors 6 in 100 000 are larger.
+inline constexpr double kClearSigmas = 4.0;
+
 // --- Scatter of blocks -----------------------------------------------------------------------------------
 
-/// s, of measurements whose errors may depend on each other. Chosen, sensitive.
+/// s, of measurements whose errors may depend on each other: the scatter of a model's parameters, the signs
+/// of the score test. Chosen, sensitive.
 inline constexpr double kBlock_s = 5.0;
 /// Blocks whose scatter still means something. Chosen, insensitive.
 inline constexpr double kFewestScattered = 12.0;

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "calib/math/number_text.hpp"
+#include "calib/math/settings.hpp"
 #include "calib/report/report.hpp"
 #include "calib/report/settings.hpp"
 
@@ -69,7 +70,7 @@ std::string what_differs(const report::Homogeneity& found, std::span<const Recor
 
 /// So large a difference is none that wider deviations could stand for.
 bool is_too_far(const report::Homogeneity& found, const ParameterChange& change) {
-  if (!(std::abs(change.sigmas) > settings::kPlainlyApart)) return false;
+  if (!(std::abs(change.sigmas) > math::settings::kClearSigmas)) return false;
   const double difference = std::abs(change.difference);
   if (change.parameter == vehicle::kMountYaw) return difference > settings::kMountApart_rad;
   if (!is_length(change.parameter)) return difference > settings::kMountApart_m;

@@ -110,8 +110,6 @@ inline constexpr double kApartLevel = 1e-3;
 /// Share of chi-squared between an odd recording and the others that one change more has to explain to be
 /// named. Chosen: a tyre changed by 1 % makes 300 and more, errors of a recording's own deviations some 15.
 inline constexpr double kShareOfChange = 0.1;
-/// Deviations of a single difference that is no chance. Chosen, insensitive.
-inline constexpr double kPlainlyApart = 4.0;
 /// Share of a length, m and rad of the lidar's place: differences beyond are refused, smaller ones widen the
 /// deviations. Chosen: the first is what the verdict warns of where a length is not known better.
 inline constexpr double kLengthApart = kWarnRelativeDeviation, kMountApart_m = 0.01, kMountApart_rad = 0.02;

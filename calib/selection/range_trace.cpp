@@ -5,6 +5,7 @@
 #include <limits>
 #include <optional>
 
+#include "calib/math/settings.hpp"
 #include "calib/selection/settings.hpp"
 #include "calib/terms/catalogue.hpp"
 #include "calib/terms/lidar_smooth_term.hpp"
@@ -126,7 +127,7 @@ class RangeTracing {
     const double p_value = p_value_of_offset(state_.evidence);
     Adjusted better = adjusted_with(offset_step, state_, used_);
     const double value = better.options.range_error(0), deviation = deviation_of_offset(better.evidence);
-    if (std::abs(value) < settings::kClearRangeError * deviation && rules_.has(Rule::range_gain)) return {};
+    if (std::abs(value) < math::settings::kClearSigmas * deviation && rules_.has(Rule::range_gain)) return {};
     const auto validation = advance(std::move(better));
     if (!validation) return {};
     return {range_finding(terms::make_range_bias(), p_value, *validation, Eigen::VectorXd::Constant(1, value),

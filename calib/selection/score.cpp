@@ -9,6 +9,7 @@
 #include <random>
 
 #include "calib/math/linear_solve.hpp"
+#include "calib/math/settings.hpp"
 #include "calib/selection/candidate_columns.hpp"
 #include "calib/selection/settings.hpp"
 #include "calib/validation/settings.hpp"
@@ -25,7 +26,7 @@ struct Blocks {
   std::vector<std::size_t> folds;
 };
 
-/// Blocks of kScoreBlock_s, none across a recording or a fold.
+/// Blocks of kBlock_s, none across a recording or a fold.
 Blocks blocks_of(std::span<const measurement::FitData> data) {
   const std::vector<std::size_t> folds = validation::folds_of(data);
   Blocks blocks;
@@ -34,7 +35,7 @@ Blocks blocks_of(std::span<const measurement::FitData> data) {
     double begin = -1e300;
     for (const measurement::SensorPair& pair : d.pairs) {
       const bool other_fold = !blocks.folds.empty() && blocks.folds.back() != folds[k];
-      if (pair.interval.begin > begin + settings::kScoreBlock_s || other_fold) {
+      if (pair.interval.begin > begin + math::settings::kBlock_s || other_fold) {
         blocks.borders.push_back(static_cast<Eigen::Index>(3 * k));
         blocks.folds.push_back(folds[k]);
         begin = pair.interval.begin;

@@ -7,11 +7,6 @@
 
 namespace odomcalib::calib::selection::settings {
 
-// --- Parts of a recording that are given a sign together -------------------------------------------------
-
-/// s, of pairs that get one sign in the score test. Chosen, insensitive.
-inline constexpr double kScoreBlock_s = 5.0;
-
 // --- Significance ----------------------------------------------------------------------------------------
 
 /// Random draws of signs; the finest family-wise p-value is 1 / (1 + draws). Chosen, insensitive.
@@ -131,8 +126,6 @@ inline constexpr int kRangePasses = 4;
 inline constexpr double kRangeSettled_m = 1e-4;
 /// Standard deviations of the mean gain on scans that were not used. Chosen, insensitive.
 inline constexpr double kHeldOutZ = 2.5;
-/// Standard deviations of an error of the ranges. Chosen as kSignificance.
-inline constexpr double kClearRangeError = 4.0;
 
 // --- Rolling waves ---------------------------------------------------------------------------------------
 

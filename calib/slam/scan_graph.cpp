@@ -6,6 +6,7 @@
 #include <memory>
 
 #include "calib/math/linear_solve.hpp"
+#include "calib/math/settings.hpp"
 #include "calib/math/vector2.hpp"
 #include "calib/slam/optimize.hpp"
 #include "calib/slam/settings.hpp"
@@ -295,7 +296,7 @@ void OdometryCorrection::learn(const math::Pose& odometry, const math::Pose& mea
   Eigen::Vector3d error = vector_of(measured) - step;
   error(2) = math::wrap_angle(error(2));
   const Eigen::Vector3d rest = error - systematic_ * step;
-  if ((rest.cwiseQuotient(sigma_).cwiseAbs().array() > settings::kFalseStep).any()) return;
+  if ((rest.cwiseQuotient(sigma_).cwiseAbs().array() > math::settings::kClearSigmas).any()) return;
   information_ += step * step.transpose();
   products_ += error * step.transpose();
   systematic_ = information_.ldlt().solve(products_.transpose()).transpose();

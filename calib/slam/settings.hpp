@@ -84,8 +84,6 @@ inline constexpr double kCorrectionPrior = 0.1;
 inline constexpr double kPriorSteps = 5.0;
 /// m and rad, of a corrected step. Chosen, sensitive.
 inline constexpr double kLeastOdometrySigma = 0.01;
-/// Deviations of a step that teaches nothing. Chosen: its match is false.
-inline constexpr double kFalseStep = 4.0;
 
 // --- Robust weights --------------------------------------------------------------------------------------
 

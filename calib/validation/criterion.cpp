@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "calib/math/settings.hpp"
 #include "calib/validation/settings.hpp"
 
 namespace odomcalib::calib::validation {
@@ -30,12 +31,12 @@ double p_value_of(const HeldOut& before, const HeldOut& after) {
 
 bool is_plain(const Estimate& estimate, double negligible) {
   const double size = std::abs(estimate.value);
-  return size > negligible && size > settings::kSignificance * std::sqrt(estimate.variance);
+  return size > negligible && size > math::settings::kClearSigmas * std::sqrt(estimate.variance);
 }
 
 bool is_idle(const Estimate& estimate, double negligible) {
   const double deviation = std::sqrt(estimate.variance);
-  return std::abs(estimate.value) <= std::max(settings::kSignificance * deviation, negligible);
+  return std::abs(estimate.value) <= std::max(math::settings::kClearSigmas * deviation, negligible);
 }
 
 bool is_mounted_elsewhere(const MountingOffset& mounting) {
@@ -52,7 +53,8 @@ bool is_sliding(double drift) { return drift >= settings::kSliding; }
 
 bool agrees(const Estimate& one, const Estimate& other) {
   const double apart = other.value - one.value;
-  return !(apart * apart > settings::kAgreement * settings::kAgreement * (one.variance + other.variance));
+  return !(apart * apart >
+           math::settings::kClearSigmas * math::settings::kClearSigmas * (one.variance + other.variance));
 }
 
 bool confirms_and_knows_better(std::span<const Comparison> parameters) {

@@ -40,11 +40,6 @@ inline constexpr double kPlainGain = 1.282;
 inline constexpr double kClearlyBetter = 0.95;
 /// Ratio of held-out RMS, after to before, in any one component. Chosen: 5 % is left to chance.
 inline constexpr double kToleratedRms = 1.05;
-/// Standard deviations from zero of an estimate that is present. Chosen: of normal errors 6 in 100 000 are
-/// larger.
-inline constexpr double kSignificance = 4.0;
-/// Standard deviations of the difference within which two estimates agree. Chosen as kSignificance.
-inline constexpr double kAgreement = 4.0;
 /// Standard deviations that chained matches drift from the places in the map. Measured: rooms with walls
 /// enough mostly stay below 1.5 (docs/developer/the-mathematics.md).
 inline constexpr double kSliding = 2.0;
