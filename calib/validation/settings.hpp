@@ -9,8 +9,6 @@ namespace odomcalib::calib::validation::settings {
 
 // --- Parts of a recording that are left out or drawn together --------------------------------------------
 
-/// s, of pairs whose held-out gain is resampled together. Chosen, insensitive.
-inline constexpr double kGainBlock_s = 10.0;
 /// s, of pairs that belong to one fold. Chosen, sensitive.
 inline constexpr double kFoldBlock_s = 20.0;
 /// s, of evaluation windows that are resampled together. Chosen, sensitive.

@@ -7,6 +7,7 @@
 #include <map>
 
 #include "calib/math/bootstrap.hpp"
+#include "calib/math/settings.hpp"
 #include "calib/validation/folds.hpp"
 #include "calib/validation/settings.hpp"
 
@@ -119,7 +120,7 @@ HeldOutGain held_out_gain(std::span<const measurement::FitData> data, const esti
   for (const measurement::FitData& d : data) {
     double begin = -1e300;
     for (std::size_t k = 0; k < d.pairs.size(); ++k) {
-      if (d.pairs[k].interval.begin > begin + settings::kGainBlock_s) {
+      if (d.pairs[k].interval.begin > begin + math::settings::kBlock_s) {
         blocks.push_back(0.0);
         begin = d.pairs[k].interval.begin;
       }
