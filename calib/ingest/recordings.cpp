@@ -73,6 +73,29 @@ StampTimes entry_of(const StampReport& report) {
           report.clocks > 0.0 ? std::optional(report.clocks) : std::nullopt};
 }
 
+namespace {
+
+const char* sentence_of(SweepKind kind) {
+  switch (kind) {
+    case SweepKind::assumed:
+      break;
+    case SweepKind::instead_of_stated:
+      return "scans state other times of their beams than the motion shows; a head that turns once from scan "
+             "to "
+             "scan explains it better, and was assumed: record time_increment as the seconds from one beam "
+             "to the "
+             "next";
+    case SweepKind::against_the_list:
+      return "scans list their beams against the order in which the head sends them, as the motion shows; "
+             "they "
+             "were turned round: list beams as they are sent";
+  }
+  return "scans do not say when their beams were sent; a head that turns once from scan to scan explains the "
+         "motion better, and was assumed: record time_increment";
+}
+
+}  // namespace
+
 std::vector<std::string> remarks_on(const StampReport& report) {
   std::vector<std::string> remarks;
   const auto remark_on = [&](const std::string& what, double seconds) {
@@ -83,10 +106,7 @@ std::vector<std::string> remarks_on(const StampReport& report) {
   };
   remark_on("ticks", report.ticks);
   remark_on("scans", report.scans);
-  if (report.sweep > 0.0)
-    remarks.push_back(
-        "scans do not say when their beams were sent; a head that turns once from scan to scan explains the "
-        "motion better, and was assumed: record time_increment");
+  if (report.sweep > 0.0) remarks.emplace_back(sentence_of(report.kind));
   if (report.clocks > 0.0)
     remarks.push_back(
         "the clocks of the recordings differ by " + std::to_string(std::lround(1e3 * report.clocks)) +

@@ -13,14 +13,24 @@
 
 namespace odomcalib::calib::ingest {
 
+/// Heads of a lidar that recordings do not tell.
+enum class SweepKind {
+  assumed,            ///< times of beams are not stated: it turns once from scan to scan, as most do
+  instead_of_stated,  ///< it turns so, although the scans state other times
+  /// Beams are listed against the order in which they were sent, as by a head that turns clockwise under a
+  /// driver that sorts them the other way and counts their times along the list.
+  against_the_list,
+};
+
 /// Report of stamps that were not believed: times that were replaced, the largest of all recordings, s; zero
 /// where those given are right.
 struct StampReport {
   double ticks = 0.0;  ///< jitter of stamps that were evened out
   double scans = 0.0;
-  double sweep = 0.0;          ///< between beams of scans that did not say so
-  double turn = 0.0;           ///< s, of the head then; negative clockwise
-  double sweep_p_value = 1.0;  ///< of scans taken for instants after all
+  double sweep = 0.0;                   ///< between beams, of what their scans do not say
+  double turn = 0.0;                    ///< s, of the head then, beyond what was stated; negative clockwise
+  SweepKind kind = SweepKind::assumed;  ///< of the sweep, where there is a turn
+  double sweep_p_value = 1.0;           ///< of scans taken for instants after all
   /// s, standard deviation between the recordings, of clocks that were aligned.
   double clocks = 0.0;
   [[nodiscard]] bool any() const { return ticks > 0.0 || scans > 0.0 || sweep > 0.0 || clocks > 0.0; }

@@ -16,11 +16,27 @@
 namespace odomcalib::calib::ingest {
 namespace {
 
-bool could_sweep(const Recording& recording) {
+bool states_a_sweep(const Scan& scan) { return scan.time_increment.has_value(); }
+
+/// Whether that kind is another one than what the scans state.
+bool could_sweep(const Recording& recording, SweepKind kind) {
   const auto& scans = recording.scans;
+  const bool is_stated = !scans.empty() && states_a_sweep(scans.front());
+  if (kind != SweepKind::against_the_list && is_stated != (kind == SweepKind::instead_of_stated))
+    return false;
   return scans.size() > 1 && std::none_of(scans.begin(), scans.end(), [&](const Scan& scan) {
-           return scan.time_increment || !scan.times.empty() || scan.sensor != scans.front().sensor;
+           return states_a_sweep(scan) != is_stated || !scan.times.empty() ||
+                  scan.sensor != scans.front().sensor;
          });
+}
+
+void list_backwards(Scan& scan) {
+  if (scan.ranges.empty()) return;
+  scan.angle_min = scan.angle(scan.ranges.size() - 1);
+  scan.angle_increment = -scan.angle_increment;
+  std::reverse(scan.ranges.begin(), scan.ranges.end());
+  std::reverse(scan.angles.begin(), scan.angles.end());
+  std::reverse(scan.intensities.begin(), scan.intensities.end());
 }
 
 double angle_between_beams(const Scan& scan) {
@@ -49,15 +65,23 @@ double step_size(const Scan& scan) {
 
 }  // namespace
 
-std::optional<Recordings> with_sweeps(const Recordings& recordings) {
+std::optional<Recordings> with_sweeps(const Recordings& recordings, SweepKind kind) {
   const auto given = recordings.view();
-  if (given.empty() || !std::all_of(given.begin(), given.end(), could_sweep)) return std::nullopt;
+  const auto could = [kind](const Recording& recording) { return could_sweep(recording, kind); };
+  if (given.empty() || !std::all_of(given.begin(), given.end(), could)) return std::nullopt;
   std::vector<Recording> sweeping(given.begin(), given.end());
-  for (Recording& recording : sweeping) let_sweep(recording);
+  const Scan& stated = given.front().scans.front();
+  const bool keeps_times = kind == SweepKind::against_the_list && states_a_sweep(stated);
+  for (Recording& recording : sweeping) {
+    if (kind == SweepKind::against_the_list)
+      for (Scan& scan : recording.scans) list_backwards(scan);
+    if (!keeps_times) let_sweep(recording);
+  }
   StampReport stamps = recordings.stamps();
   const Scan& first = sweeping.front().scans.front();
   stamps.sweep = *first.time_increment;
-  stamps.turn = turn_of_head(first);
+  stamps.turn = turn_of_head(first) - turn_of_head(stated);
+  stamps.kind = kind;
   return Recordings(std::move(sweeping), stamps);
 }
 

@@ -9,10 +9,11 @@
 
 namespace odomcalib::calib::ingest {
 
-/// The recordings with beams sent one after the other by a head that turns once from scan to scan, as most
-/// do; whether this one does, motion has to say. The report states the sweep. Nothing where any recording
-/// states times of beams, has no scans, or those of several sensors.
-std::optional<Recordings> with_sweeps(const Recordings& recordings);
+/// The recordings with beams sent by a head of that kind; whether it is, motion has to say. The report states
+/// the sweep, and by how much a turn of it takes longer than what was stated. Nothing where any recording has
+/// a time for each beam, no scans, or those of several sensors, or where times are stated and of the kind
+/// they are not, or the other way round.
+std::optional<Recordings> with_sweeps(const Recordings& recordings, SweepKind kind = SweepKind::assumed);
 
 /// A stamp is that of the first beam. Where there is a delay anyway, let it be the delay of the sweep's
 /// middle, as it would be of scans taken for instants.

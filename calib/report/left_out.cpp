@@ -53,6 +53,23 @@ void add_losses(std::span<const Recording> recordings, std::size_t k, std::vecto
 
 std::string milliseconds(double seconds) { return std::to_string(std::lround(1e3 * seconds)) + " ms"; }
 
+Repair repair_of(ingest::SweepKind kind) {
+  Repair repair{"times of the beams", "a head that turns once from scan to scan", ""};
+  switch (kind) {
+    case ingest::SweepKind::assumed:
+      repair.reason = "scans do not say when their beams were sent, and this explains the motion better";
+      break;
+    case ingest::SweepKind::instead_of_stated:
+      repair.reason = "the times that scans state explain the motion worse";
+      break;
+    case ingest::SweepKind::against_the_list:
+      repair.what = "order of the beams";
+      repair.chosen = "against that of the list";
+      repair.reason = "a head that turns the other way explains the motion better";
+  }
+  return repair;
+}
+
 }  // namespace
 
 std::vector<Discarded> left_out(std::span<const Recording> recordings,
@@ -109,9 +126,7 @@ std::vector<Repair> repairs_of(const ingest::Recordings& recordings) {
   };
   add_even("stamps of the counts", stamps.ticks);
   add_even("stamps of the scans", stamps.scans);
-  if (stamps.sweep > 0.0)
-    all.push_back({"times of the beams", "a head that turns once from scan to scan",
-                   "scans do not say when their beams were sent, and this explains the motion better"});
+  if (stamps.sweep > 0.0) all.push_back(repair_of(stamps.kind));
   if (stamps.clocks > 0.0)
     all.push_back({"clocks", "one for each recording",
                    "they differ by " + milliseconds(stamps.clocks) + " (standard deviation) beyond chance"});

@@ -1,11 +1,14 @@
 #include "calib/stages/fit_stages.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "calib/ingest/sweeps.hpp"
+#include "calib/math/se2.hpp"
 #include "calib/measurement/scan_stamps.hpp"
 #include "calib/stages/settings.hpp"
+#include "calib/terms/catalogue.hpp"
 #include "calib/validation/criterion.hpp"
 
 namespace odomcalib::calib::stages {
@@ -66,6 +69,28 @@ bool has_plain_value(const selection::FittedModel& model, std::size_t effect) {
   return false;
 }
 
+/// Time of a turn of the head beyond the one that the fit has, s, as bent scans show it; 0 where they are
+/// not.
+double turn_beyond(const estimation::Fit& fit) {
+  vehicle::VehicleModel bent = fit.model;
+  bent.effects.push_back(terms::make_scan_skew());
+  bent.parameters.conservativeResizeLike(Eigen::VectorXd::Zero(bent.parameters.size() + 1));
+  const estimation::Fit skewed = estimation::fit_once(fit.dataset, bent);
+  if (skewed.failure) return 0.0;
+  const validation::Estimate skew = estimate_of(skewed.result, bent.parameters.size() - 1);
+  return validation::is_plain(skew) ? 2.0 * math::kPi * skew.value : 0.0;
+}
+
+/// The fit to the sweeps, if it is clearly better on data that it was not fitted to.
+std::optional<estimation::Fit> if_better(const estimation::Fit& fit, estimation::Fit swept) {
+  const auto before = validation::held_out_residual(fit), after = validation::held_out_residual(swept);
+  if (!validation::is_clearly_better(before, after)) return std::nullopt;
+  ingest::StampReport stamps = swept.dataset.recordings.stamps();
+  stamps.sweep_p_value = validation::p_value_of(*before, *after);
+  swept.dataset.recordings = swept.dataset.recordings.reported_as(stamps);
+  return swept;
+}
+
 }  // namespace
 
 estimation::Fit choose_scan_stamps(estimation::Fit fit, const estimation::Settling& how) {
@@ -78,15 +103,23 @@ estimation::Fit choose_scan_stamps(estimation::Fit fit, const estimation::Settli
 estimation::Fit choose_sweep_timing(estimation::Fit fit, const terms::Request& request,
                                     const estimation::Settling& how) {
   if (fit.failure || !fit.dataset.reference_is_scans()) return fit;
+  using ingest::SweepKind;
   const auto sweeping = ingest::with_sweeps(fit.dataset.recordings);
-  if (!sweeping) return fit;
-  estimation::Fit swept = fit_to_sweeps(with_scans_of(fit.dataset, *sweeping), request, how);
-  const auto before = validation::held_out_residual(fit), after = validation::held_out_residual(swept);
-  if (!validation::is_clearly_better(before, after)) return fit;
-  ingest::StampReport stamps = swept.dataset.recordings.stamps();
-  stamps.sweep_p_value = validation::p_value_of(*before, *after);
-  swept.dataset.recordings = swept.dataset.recordings.reported_as(stamps);
-  return swept;
+  if (sweeping)
+    if (auto better = if_better(fit, fit_to_sweeps(with_scans_of(fit.dataset, *sweeping), request, how)))
+      return std::move(*better);
+  const double beyond = turn_beyond(fit);
+  if (beyond == 0.0) return fit;
+  for (const SweepKind kind : {SweepKind::against_the_list, SweepKind::instead_of_stated}) {
+    const auto other = ingest::with_sweeps(fit.dataset.recordings, kind);
+    // The turn that scans show is nearer to that of this head than to none, or to twice as much.
+    if (!other || !(2.0 * std::abs(beyond - other->stamps().turn) < std::abs(other->stamps().turn))) continue;
+    measurement::Dataset turned = with_scans_of(fit.dataset, *other);
+    auto better = if_better(fit, sweeping ? fit_to_sweeps(std::move(turned), request, how)
+                                          : fit_anew(std::move(turned), request, how));
+    if (better) return std::move(*better);
+  }
+  return fit;
 }
 
 estimation::Fit mount_reference(estimation::Fit fit, const estimation::Settling& how) {

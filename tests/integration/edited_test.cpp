@@ -204,6 +204,52 @@ TEST(Sweeps, are_not_assumed_of_a_head_that_turns_faster) {
   EXPECT_FALSE(result.stamps);
 }
 
+/// As of a head that turns the other way under a driver that sorts the beams and counts their times along
+/// the list.
+void list_backwards(Recording& recording) {
+  for (Scan& scan : recording.scans) {
+    scan.angle_min = scan.angle(scan.ranges.size() - 1);
+    scan.angle_increment = -scan.angle_increment;
+    std::reverse(scan.ranges.begin(), scan.ranges.end());
+  }
+}
+
+void list_backwards_without_times(Recording& recording) {
+  list_backwards(recording);
+  forget_beam_times(recording);
+}
+
+void halve_beam_times(Recording& recording) {
+  for (Scan& scan : recording.scans) *scan.time_increment *= 0.5;
+}
+
+class OtherSweeps : public ::testing::TestWithParam<Edit> {};
+
+TEST_P(OtherSweeps, are_put_right_and_make_no_other_effect) {
+  Recording recording = plain_run().recording;
+  GetParam().make(recording);
+  const Calibration result = calib::solve({&recording, 1}, {});
+  ASSERT_EQ(result.effects.size(), 1U) << test_support::told(result);
+  EXPECT_EQ(result.effects.front().name, GetParam().told);
+  EXPECT_FALSE(result.unexplained) << test_support::told(result);
+  ASSERT_EQ(result.reasons.size(), 1U);
+  EXPECT_NE(result.reasons.front().find(GetParam().remark), std::string::npos) << result.reasons.front();
+  const Calibration plain = calib::solve({&plain_run().recording, 1}, {});
+  for (std::size_t k = 0; k < 3; ++k)
+    EXPECT_LT(result.parameters[k].second.std, 1.2 * plain.parameters[k].second.std)
+        << result.parameters[k].first;
+  for (const double sigma : test_support::length_errors_in_sigmas(result, plain_run().truth))
+    EXPECT_LT(std::abs(sigma), 4.0) << test_support::told(result);
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    ByHand, OtherSweeps,
+    ::testing::Values(Edit{"listed_backwards", list_backwards, "scan_skew", "against the order"},
+                      Edit{"listed_backwards_without_times", list_backwards_without_times, "scan_skew",
+                           "against the order"},
+                      Edit{"half_the_time", halve_beam_times, "scan_skew", "other times of their beams"}),
+    [](const auto& edited) { return edited.param.name; });
+
 double slower_than(double rate, double limit) { return std::abs(rate) < limit ? 1.0 : 0.0; }
 
 INSTANTIATE_TEST_SUITE_P(

@@ -100,6 +100,31 @@ TEST(Sweeps, beams_in_one_direction_turn_no_head) {
 TEST(Sweeps, stated_times_of_beams_are_believed) {
   const std::vector<Recording> given = scanned(1e-4);
   EXPECT_FALSE(with_sweeps(Recordings(given)));
+  EXPECT_FALSE(with_sweeps(Recordings(scanned(std::nullopt)), SweepKind::instead_of_stated));
+}
+
+TEST(Sweeps, a_head_that_turns_once_a_scan_may_stand_against_stated_times) {
+  const double half = 0.5 * 0.1 * 0.1 / (2.0 * math::kPi);
+  const auto sweeping = with_sweeps(Recordings(scanned(half)), SweepKind::instead_of_stated);
+  ASSERT_TRUE(sweeping);
+  EXPECT_NEAR(sweeping->stamps().turn, 0.05, 1e-6);
+  EXPECT_NEAR(*sweeping->front().scans[0].time_increment, 2.0 * half, 1e-9);
+}
+
+TEST(Sweeps, beams_that_are_sent_against_their_list_are_listed_as_they_are_sent) {
+  const double increment = 0.1 * 0.1 / (2.0 * math::kPi);
+  for (const auto& stated : {std::optional(increment), std::optional<double>()}) {
+    std::vector<Recording> given = scanned(stated);
+    given.front().scans[3].ranges[7] = 2.0F;
+    const auto sweeping = with_sweeps(Recordings(given), SweepKind::against_the_list);
+    ASSERT_TRUE(sweeping);
+    const Scan &before = given.front().scans[3], &after = sweeping->front().scans[3];
+    EXPECT_EQ(after.ranges[59 - 7], 2.0F);
+    EXPECT_NEAR(after.angle(59 - 7), before.angle(7), 1e-9);
+    EXPECT_EQ(after.t, before.t);
+    EXPECT_NEAR(*after.time_increment, increment, 1e-9);
+    EXPECT_NEAR(sweeping->stamps().turn, stated ? -0.2 : -0.1, 1e-6);
+  }
 }
 
 TEST(Sweeps, a_stamp_in_the_middle_moves_by_half_a_scan) {
