@@ -7,12 +7,14 @@
 #include <complex>
 #include <limits>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "calib/ingest/settings.hpp"
 #include "calib/math/linear_solve.hpp"
 #include "calib/math/number_text.hpp"
 #include "calib/math/se2.hpp"
+#include "proto/recording/wheel_motion.hpp"
 
 namespace odomcalib::calib::ingest {
 namespace {
@@ -22,11 +24,12 @@ struct Step {
   double turn = 0.0;                ///< rad
 };
 
-/// Long enough that rounded numbers hardly bend it, short enough to be an arc.
+/// Long enough that rounded numbers hardly bend it, short enough to be an arc, and none over a reset.
 std::vector<Step> steps_of(const std::vector<PoseSample>& poses) {
   std::vector<Step> steps;
-  PoseSample from = poses.front();
+  PoseSample from = poses.front(), before = from;
   for (const PoseSample& to : poses) {
+    if (is_reset(std::exchange(before, to), to)) from = to;
     const double x = to.x - from.x, y = to.y - from.y, turn = math::wrap_angle(to.yaw - from.yaw);
     if (std::hypot(x, y) < settings::kOdometryStep_m && std::abs(turn) < settings::kOdometryStep_rad)
       continue;

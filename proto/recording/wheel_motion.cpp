@@ -52,6 +52,10 @@ bool at_origin(const PoseSample& pose) { return pose.x == 0.0 && pose.y == 0.0 &
 
 }  // namespace
 
+bool is_reset(const PoseSample& before, const PoseSample& pose) {
+  return at_origin(pose) && !at_origin(before);
+}
+
 std::int64_t count_of(double angle, double counts_per_rev) {
   const double counts = angle / kTurn * counts_per_rev;
   return std::abs(counts) < kMostCounts ? std::llround(counts) : 0;
@@ -103,7 +107,7 @@ MadeTicks ticks_from_odometry(const std::vector<PoseSample>& poses, const RobotD
   std::int32_t segment = 0;
   for (std::size_t i = 0; i < poses.size(); ++i) {
     const PoseSample& to = poses[i];
-    if (i > 0 && at_origin(to) && !at_origin(poses[i - 1])) {
+    if (i > 0 && is_reset(poses[i - 1], to)) {
       ++segment;
     } else if (i > 0) {
       const PoseSample& from = poses[i - 1];

@@ -33,8 +33,11 @@ MadeTicks ticks_from_wheels(const std::vector<WheelSample>& wheels, double state
 /// Counts of speeds, each held until the next sample, sorted by time.
 MadeTicks ticks_from_wheel_speeds(const std::vector<WheelSample>& speeds);
 
-/// Counts of the poses that a robot computed with its nominal values, sorted by time. A return to exactly the
-/// origin begins a new segment.
+/// Whether odometry began anew between two poses: a return to exactly the origin.
+bool is_reset(const PoseSample& before, const PoseSample& pose);
+
+/// Counts of the poses that a robot computed with its nominal values, sorted by time. A reset begins a new
+/// segment.
 MadeTicks ticks_from_odometry(const std::vector<PoseSample>& poses, const RobotDescription& robot);
 
 /// Ways of the left and the right wheel, in m, between two poses (x, y, yaw) of odometry.
