@@ -16,6 +16,10 @@ inline constexpr double kWarnRelativeDeviation = 0.005;
 inline constexpr double kPlausibleLow = 0.5, kPlausibleHigh = 2.0;
 /// Relative difference from the nominal value to warn of. Chosen, insensitive.
 inline constexpr double kWarnChange = 0.10;
+/// Difference between the changes of the three lengths, as a share of their change, up to which they change
+/// by one factor. Measured: 0.00002 to 0.002 where yaw of the odometry was a gyro's; chance makes it of one
+/// in some hundred robots whose nominal lengths err by 1 % each.
+inline constexpr double kOneFactor = 0.02;
 /// Relative, of a scan matcher's metre; it depends on the room. Measured: 0.02 % over simulated rooms
 /// (tests/integration/accuracy_test.cpp).
 inline constexpr double kMatcherScale = 2e-4;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <optional>
 #include <string>
 #include <utility>
@@ -11,6 +12,7 @@
 #include "calib/classical/length_factor.hpp"
 #include "calib/classical/settings.hpp"
 #include "calib/math/number_text.hpp"
+#include "calib/math/settings.hpp"
 #include "calib/report/settings.hpp"
 #include "calib/validation/drive_error.hpp"
 #include "calib/validation/settings.hpp"
@@ -366,6 +368,31 @@ Objections lengths(const Calibration& calibration, const VerdictEvidence& eviden
   return found;
 }
 
+/// Odometry whose yaw another sensor tells, and whose place is the way of the wheels along it, is wrong by
+/// the scale of the wheels alone. Turned back into wheels, it shows nothing of their ratio and of the track
+/// width.
+Objections odometry_yaw(const Calibration& calibration, const VerdictEvidence& evidence) {
+  if (evidence.motion != MotionSource::odometry) return {};
+  double least = std::numeric_limits<double>::infinity(), most = -least, deviation = 0.0;
+  for (const Length& length : lengths_of(calibration, evidence)) {
+    if (!(length.nominal > 0.0)) return {};
+    const double change = length.quantity.value / length.nominal - 1.0;
+    least = std::min(least, change);
+    most = std::max(most, change);
+    deviation = std::max(deviation, length.measured);
+  }
+  const double factor = 0.5 * (least + most);
+  if (!(std::abs(factor) > math::settings::kClearSigmas * deviation) ||
+      !(most - least < settings::kOneFactor * std::abs(factor)))
+    return {};
+  return {warning(
+      "both diameters and the track width change by one factor, " + math::fixed(100.0 * factor, 2) +
+      " %, and the heading was right before: either the old values were calibrated against another "
+      "metre, or yaw of the odometry is that of a gyro or a filter, which tells nothing of the track "
+      "width and of the ratio of the wheels; record the odometry that the wheels alone make, or joint "
+      "states")};
+}
+
 /// Both may be right: what is called front decides.
 Objections lidar_yaw(const Calibration& calibration, const VerdictEvidence& evidence) {
   const auto yaw = calibration.parameter(BaseQuantity::lidar_yaw);
@@ -572,6 +599,9 @@ constexpr std::array kRules = {
                 "solve recordings before and after a change of tyres, load or lidar separately",
                 recordings_disagree},
     VerdictRule{"lengths", "record more of the motion that the reason names, and solve again", lengths},
+    VerdictRule{"odometry_yaw",
+                "record the odometry that the wheels alone make, or joint states, and solve again",
+                odometry_yaw},
     VerdictRule{"lidar_yaw", "correct lidar_pose in robot.toml, and solve again", lidar_yaw},
     VerdictRule{"unmatched_pairs", "record where the lidar sees walls on all sides", unmatched_pairs},
     VerdictRule{"contradicting_pairs", "look for lost counts, slip and wrong time stamps, and record again",

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -203,6 +204,27 @@ TEST(Gate, warns_of_a_lidar_that_looks_elsewhere_than_its_description_says) {
   EXPECT_EQ(gate.verdict, Verdict::accepted_with_warnings);
   ASSERT_EQ(gate.reasons.size(), 1U);
   EXPECT_NE(gate.reasons[0].find("-178 degrees"), std::string::npos) << gate.reasons[0];
+}
+
+TEST(Gate, warns_of_odometry_whose_heading_is_not_that_of_the_wheels) {
+  const auto with = [](double left, double right, double track, MotionSource motion) {
+    Calibration calibration = sound();
+    const std::array changes = {left, right, track};
+    for (std::size_t k = 0; k < changes.size(); ++k) {
+      auto& [name, quantity] = calibration.parameters[k];
+      quantity = {(name == "track_width" ? 0.4 : 0.15) * (1.0 + changes[k]), 1e-5, "m"};
+    }
+    VerdictEvidence evidence = kFirm;
+    evidence.motion = motion;
+    return judge(calibration, evidence);
+  };
+  const GateResult gate = with(-0.02199, -0.02198, -0.02197, MotionSource::odometry);
+  EXPECT_EQ(gate.verdict, Verdict::accepted_with_warnings);
+  ASSERT_EQ(gate.reasons.size(), 1U);
+  EXPECT_NE(gate.reasons[0].find("one factor, -2.20 %"), std::string::npos) << gate.reasons[0];
+  EXPECT_EQ(with(-0.02199, -0.02198, -0.02197, MotionSource::ticks).verdict, Verdict::accepted);
+  EXPECT_EQ(with(-0.02199, -0.02140, -0.02197, MotionSource::odometry).verdict, Verdict::accepted);
+  EXPECT_EQ(with(1e-5, 1e-5, 1e-5, MotionSource::odometry).verdict, Verdict::accepted) << "nothing changed";
 }
 
 TEST(Gate, refuses_values_of_the_few_scans_that_happened_to_match) {
