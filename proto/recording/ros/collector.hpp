@@ -56,7 +56,7 @@ struct Topic {
   std::vector<std::vector<std::string>> joint_names;  ///< every list that a message had
   std::vector<Stamped<JointValues>> joints;
   std::vector<Stamped<double>> yaw_rates;
-  std::vector<Stamped<PoseSample>> poses;  ///< t is not set; odometry and pose
+  std::vector<Stamped<PoseSample>> poses;  ///< t is not set, yaw NaN: no rotation; odometry and pose
   std::size_t unusable = 0;                ///< transforms without a place or a rotation, of all messages
   std::vector<Transform> transforms;  ///< of /tf_static, that of a child as it came last; of a description
 };

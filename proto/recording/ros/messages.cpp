@@ -125,16 +125,15 @@ bool is_finite(const std::array<double, 3>& position) {
   return std::all_of(position.begin(), position.end(), [](double one) { return std::isfinite(one); });
 }
 
-/// Position and quaternion. False when there is no heading.
-bool read_pose(MessageReader& reader, PoseMessage& out) {
+/// Position and quaternion. What is no rotation has no yaw.
+void read_pose(MessageReader& reader, PoseMessage& out) {
   const auto position = reader.numbers<double, 3>();
   const auto q = reader.numbers<double, 4>();
   out.x = position[0];
   out.y = position[1];
-  if (!is_rotation(q)) return false;
-  out.yaw =
-      std::atan2(2.0 * (q[3] * q[2] + q[0] * q[1]), q[3] * q[3] + q[0] * q[0] - q[1] * q[1] - q[2] * q[2]);
-  return true;
+  out.yaw = is_rotation(q) ? std::atan2(2.0 * (q[3] * q[2] + q[0] * q[1]),
+                                        q[3] * q[3] + q[0] * q[0] - q[1] * q[1] - q[2] * q[2])
+                           : std::nan("");
 }
 
 /// No reading, where REP 117 or a driver puts no finite distance.
@@ -195,10 +194,8 @@ std::optional<JointState> decode_joints(std::string_view bytes, Encoding encodin
   out.names = reader.texts();
   out.positions = reader.sequence<double>();
   out.velocities = reader.sequence<double>();
-  const auto fits = [&](const std::vector<double>& values) {
-    return values.empty() || values.size() == out.names.size();
-  };
-  if (!fits(out.positions) || !fits(out.velocities)) return std::nullopt;
+  for (std::vector<double>* values : {&out.positions, &out.velocities})
+    if (values->size() != out.names.size()) values->clear();
   return if_whole(reader, std::move(out));
 }
 
@@ -218,7 +215,7 @@ std::optional<PoseMessage> decode_odometry(std::string_view bytes, Encoding enco
   PoseMessage out;
   out.header = reader.header();
   out.child_frame = reader.text();
-  if (!read_pose(reader, out)) return std::nullopt;
+  read_pose(reader, out);
   return if_whole(reader, std::move(out));
 }
 
@@ -226,7 +223,7 @@ std::optional<PoseMessage> decode_pose(std::string_view bytes, Encoding encoding
   MessageReader reader(bytes, encoding);
   PoseMessage out;
   out.header = reader.header();
-  if (!read_pose(reader, out)) return std::nullopt;
+  read_pose(reader, out);
   return if_whole(reader, std::move(out));
 }
 

@@ -45,7 +45,7 @@ struct LaserScan {
 struct JointState {
   Header header;
   std::vector<std::string> names;
-  std::vector<double> positions, velocities;  ///< rad, rad/s; empty, or one a name
+  std::vector<double> positions, velocities;  ///< rad, rad/s; one a name; empty where there are fewer or more
 };
 
 struct Imu {
@@ -58,7 +58,7 @@ struct PoseMessage {
   Header header;
   std::string child_frame;  ///< Odometry only
   double x = 0.0, y = 0.0;  ///< m
-  double yaw = 0.0;         ///< rad, of the quaternion
+  double yaw = 0.0;         ///< rad, of the quaternion; NaN where that is no rotation
 };
 
 /// One of tf2_msgs/TFMessage: pose of `child` in `frame`.

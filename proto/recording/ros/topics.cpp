@@ -17,6 +17,8 @@ namespace {
 // ns, by which a recorder of several threads writes messages in another order than it had them. Chosen.
 constexpr std::int64_t kReceivedApart_ns = 100'000'000;
 
+constexpr const char* kNotItsType = ": does not hold what its type says";
+
 bool has_values(const Topic& topic, const std::vector<Places>& at, bool speeds) {
   return std::any_of(topic.joints.begin(), topic.joints.end(), [&](const auto& one) {
     const Places& place = at[one.value.names];
@@ -65,11 +67,15 @@ void add_joint_samples(RecordingBuilder& builder, const Topic& topic, const Join
   const bool halves = std::none_of(topic.joints.begin(), topic.joints.end(), [&](const auto& one) {
     return at[one.value.names][0] && at[one.value.names][1];
   });
-  std::size_t without = 0;
+  const char* part = name_of(speeds ? MotionSource::wheel_speeds : MotionSource::wheels);
+  std::size_t without = 0, empty = 0;
   for (const auto& one : topic.joints) {
     const Places& place = at[one.value.names];
     const auto& values = speeds ? one.value.velocities : one.value.positions;
-    if (values.empty() || (!place[0] && !place[1]) || (!halves && (!place[0] || !place[1]))) {
+    const bool has_wheels = halves ? place[0] || place[1] : place[0] && place[1];
+    if (has_wheels && one.value.positions.empty() && one.value.velocities.empty()) {
+      ++empty;
+    } else if (!has_wheels || values.empty()) {
       ++without;
     } else if (place[0] && place[1]) {
       const WheelSample sample{clock(one), values[*place[0]], values[*place[1]]};
@@ -80,6 +86,8 @@ void add_joint_samples(RecordingBuilder& builder, const Topic& topic, const Join
     }
   }
   builder.discard("message", topic.header.name + ": without the joints of the wheels", without);
+  builder.discard(part, topic.header.name + ": no values for the joints of the wheels", empty);
+  builder.discard("message", topic.header.name + kNotItsType, topic.malformed);  // may be other joints
 }
 
 void add_wheels(RecordingBuilder& builder, const Chosen& chosen, const Clock& clock, bool no_angles) {
@@ -102,14 +110,25 @@ void add_wheels(RecordingBuilder& builder, const Chosen& chosen, const Clock& cl
   add_joint_samples(builder, *topic, joints, clock, no_angles);
 }
 
+std::string no_rotation(const Topic& topic) {
+  return "the orientation in " + topic.header.name +
+         " is no rotation: its quaternion is not of length 1 (all zero, or yaw written into z)";
+}
+
 void add_poses(RecordingBuilder& builder, const Topic& topic, const Clock& clock, Part part) {
   const Frames frames = topic.poses.empty() ? Frames{} : topic.frames[topic.poses.front().frames];
   const std::string child = frames.child.empty() ? "" : " of the frame " + frames.child;
   builder.choose(name_of(part) + child + ": " + described(topic));
+  builder.discard(name_of(part), topic.header.name + kNotItsType, topic.malformed);
   for (const auto& one : topic.poses) {
     PoseSample sample = one.value;
     sample.t = clock(one);
-    part == Part::odometry ? builder.add_odometry(sample) : builder.add_pose(sample);
+    if (std::isnan(sample.yaw))
+      builder.discard(name_of(part), no_rotation(topic));
+    else if (part == Part::odometry)
+      builder.add_odometry(sample);
+    else
+      builder.add_pose(sample);
   }
 }
 
@@ -117,6 +136,7 @@ void add_scans(RecordingBuilder& builder, Topic& topic, const Clock& clock) {
   builder.choose("scan: " + described(topic));
   const std::string several = frames_of_scans(topic);
   if (!several.empty()) builder.choose(topic.header.name + " has scans of several frames: " + several);
+  builder.discard("scan", topic.header.name + kNotItsType, topic.malformed);
   for (auto& one : topic.scans) {
     Scan scan = std::move(one.value);
     scan.t = clock(one);
@@ -128,6 +148,7 @@ void add_scans(RecordingBuilder& builder, Topic& topic, const Clock& clock) {
 
 void add_gyro(RecordingBuilder& builder, const Topic& topic, const Clock& clock) {
   builder.choose("gyro: " + described(topic));
+  builder.discard("gyro", topic.header.name + kNotItsType, topic.malformed);
   for (const auto& one : topic.yaw_rates) builder.add_gyro({clock(one), one.value});
 }
 
@@ -196,10 +217,10 @@ void tell_rest(RecordingBuilder& builder, const Collector& collector, const Chos
     builder.discard("transform", name + ": position or rotation missing or impossible", topic.unusable);
     if (topic.kind == Kind::none)
       builder.discard("message", unread(topic), topic.count);
-    else if (!is_taken && !tells_mounting(topic.kind))  // what tells it is no samples, and always read
+    else if (tells_mounting(topic.kind))  // no samples, and always read
+      builder.discard("message", name + kNotItsType, topic.malformed);
+    else if (!is_taken)
       builder.discard("message", name + " was not taken", topic.count);
-    else
-      builder.discard("message", name + ": does not hold what its type says", topic.malformed);
   }
   for (const auto& [what, count] : collector.discarded()) builder.discard(what.first, what.second, count);
 }
@@ -227,10 +248,26 @@ bool is_in_order_of_reception(const Chosen& chosen) {
   });
 }
 
+/// Odometry that does not say how the robot moved.
+std::optional<Error> odometry_fault(const Topic& topic, const std::string& where) {
+  const auto& poses = topic.poses;
+  const auto lost = static_cast<std::size_t>(
+      std::count_if(poses.begin(), poses.end(), [](const auto& one) { return std::isnan(one.value.yaw); }));
+  if (2 * lost > poses.size())
+    return Error{ErrorCode::format,
+                 no_rotation(topic) + ", in " + std::to_string(lost) + " of " + std::to_string(poses.size()) +
+                     " messages",
+                 where, "send z = sin(yaw / 2) and w = cos(yaw / 2), and record again"};
+  return std::nullopt;
+}
+
 std::optional<Error> fill_chosen(RecordingBuilder& builder, Chosen& chosen, const std::string& where) {
   const bool no_angles = chosen[Part::wheel_speeds] != nullptr || speeds_only(chosen);
   builder.take_from(middleware_of(chosen));
   if (auto error = settle_publishers(builder, chosen, no_angles, where)) return error;
+  for (const Part part : {Part::odometry, Part::pose})
+    if (const Topic* topic = chosen[part]; topic != nullptr && topic->kind == Kind::odometry)
+      if (auto error = odometry_fault(*topic, where)) return error;
   const Clock clock(chosen);
   if (!clock.remark().empty()) builder.choose(clock.remark());
   builder.count_from(clock.start());

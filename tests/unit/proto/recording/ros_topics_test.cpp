@@ -161,6 +161,16 @@ TEST(RosTopics, angles_that_never_change_beside_speeds_give_speeds) {
   EXPECT_EQ(value_of(read_ros(mcap(filled_in(0.0)))).motion, MotionSource::wheels) << "the robot stood";
 }
 
+TEST(RosTopics, joints_that_have_no_value_for_the_wheels_are_counted_among_them) {
+  sim::RosLog log = joints_log({"left", "right"});
+  for (int k = 0; k < 5; ++k)
+    test::add_joints(log, "/joint_states", test::kRosStart + 1000 * test::kMillisecond_ns + k,
+                     {"left", "right"}, {1.0});
+  const auto result = value_of(read_ros(mcap(log)));
+  EXPECT_EQ(discarded_like(result, "wheels", "/joint_states: no values for the joints of the wheels"), 5U)
+      << list_discarded(result);
+}
+
 TEST(RosTopics, joints_without_angles_give_speeds) {
   const auto result = value_of(read_ros(mcap(joints_log({"left", "right"}, false, true))));
   EXPECT_EQ(result.motion, MotionSource::wheel_speeds);
@@ -228,7 +238,7 @@ TEST(RosTopics, an_imu_that_states_no_rates_has_none) {
   log.add("/imu", "sensor_msgs/Imu", kStart, encode_imu(log.wire, {kStart, "imu"}, 0.5, -1.0));
   const auto result = value_of(read_ros(mcap(log)));
   EXPECT_EQ(result.gyro.size(), 40U);
-  EXPECT_EQ(discarded_like(result, "message", "/imu: does not hold"), 1U);
+  EXPECT_EQ(discarded_like(result, "gyro", "/imu: does not hold"), 1U);
 }
 
 TEST(RosTopics, stamps_of_headers_are_used_and_those_that_are_zero_replaced_by_reception) {

@@ -1,0 +1,106 @@
+// Poses of ROS recordings that are none: orientations that are no rotation.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cstring>
+
+#include "tests/unit/proto/recording/ros_support.hpp"
+
+namespace odomcalib::ros_poses_test {
+namespace {
+
+using sim::RosLog;
+using sim::Wire;
+using test::discarded_like;
+using test::kMillisecond_ns;
+using test::kRosStart;
+using test::list_discarded;
+using test::read_ros;
+using test::small_drive;
+using ::testing::HasSubstr;
+
+// Bytes from there to the end of nav_msgs/Odometry: two covariances, six numbers of the twist, a quaternion.
+constexpr std::size_t kTwist = (6 + 36) * sizeof(double);
+constexpr std::size_t kOrientation = (4 + 36) * sizeof(double) + kTwist;
+
+/// Numbers of a little-endian message, so many bytes before its end.
+void overwrite(std::string& bytes, std::size_t before_end, const std::vector<double>& numbers) {
+  std::memcpy(bytes.data() + (bytes.size() - before_end), numbers.data(), numbers.size() * sizeof(double));
+}
+
+/// The small drive by odometry alone, whose messages were changed by their number.
+template <typename Change>
+RosLog odometry_log(Change change, Wire wire = Wire::cdr_little) {
+  RosLog log = sim::ros_log(small_drive(), {.wire = wire, .joints = false});
+  std::size_t k = 0;
+  for (auto& message : log.messages)
+    if (log.topics[message.topic].name == "/odom") change(message.bytes, k++);
+  return log;
+}
+
+/// How many there were, of a kind of which some were left out.
+std::size_t all_of(const Recording& recording, const std::string& what) {
+  for (const Discarded& one : recording.discarded)
+    if (one.what == what) return one.of;
+  return 0;
+}
+
+RosLog pose_log(bool rotations) {
+  Recording drive = small_drive();
+  drive.scans.clear();
+  RosLog log = sim::ros_log(drive, {.wire = Wire::cdr_little});
+  for (int k = 0; k < 20; ++k) {
+    const std::int64_t time = kRosStart + 100 * kMillisecond_ns * k;
+    std::string bytes = encode_pose(log.wire, {time, "map"}, {0.1 * k, 0.2, 0.3});
+    if (!rotations || k < 5) overwrite(bytes, 4 * sizeof(double), {0, 0, 0, 0});
+    log.add("/mocap", "geometry_msgs/PoseStamped", time, std::move(bytes));
+  }
+  return log;
+}
+
+TEST(RosPoses, without_a_rotation_are_counted_as_what_they_would_have_been) {
+  for (const Wire wire : {Wire::ros1, Wire::cdr_little}) {
+    const RosLog log = odometry_log(
+        [](std::string& bytes, std::size_t k) {
+          if (k % 10 < 4) overwrite(bytes, kOrientation, {0, 0, 1.5, 1});
+        },
+        wire);
+    const auto found = value_of(read_ros(write_mcap(log)));
+    EXPECT_EQ(found.odometry.size(), 120U);
+    EXPECT_EQ(discarded_like(found, "odometry", "the orientation in /odom is no rotation"), 80U)
+        << list_discarded(found);
+    EXPECT_EQ(all_of(found, "odometry"), 200U);
+  }
+  const auto found = value_of(read_ros(write_mcap(pose_log(true))));
+  EXPECT_EQ(found.poses.size(), 15U);
+  EXPECT_EQ(discarded_like(found, "pose", "no rotation"), 5U) << list_discarded(found);
+}
+
+TEST(RosPoses, that_cannot_be_read_and_scans_are_counted_among_their_kind) {
+  RosLog log = odometry_log([](std::string& bytes, std::size_t k) {
+    if (k < 50) bytes.resize(20);
+  });
+  std::size_t scans = 0;
+  for (auto& message : log.messages)
+    if (log.topics[message.topic].name == "/scan" && scans++ < 3) message.bytes.resize(20);
+  const auto found = value_of(read_ros(write_mcap(log)));
+  EXPECT_EQ(discarded_like(found, "odometry", "/odom: does not hold what its type says"), 50U)
+      << list_discarded(found);
+  EXPECT_EQ(discarded_like(found, "scan", "/scan: does not hold what its type says"), 3U);
+  EXPECT_EQ(all_of(found, "odometry"), 200U);
+  EXPECT_EQ(all_of(found, "scan"), 40U);
+}
+
+/// Yaw written into z of the quaternion is one of length 1 near 0 only.
+TEST(RosPoses, most_of_which_are_without_a_rotation_are_refused_for_that) {
+  const RosLog log = odometry_log([](std::string& bytes, std::size_t k) {
+    if (k % 10 < 6) overwrite(bytes, kOrientation, {0, 0, 1.5, 1});
+  });
+  const auto refused = read_ros(write_mcap(log));
+  ASSERT_FALSE(refused.ok());
+  EXPECT_THAT(refused.error().text(), HasSubstr("the orientation in /odom is no rotation"));
+  EXPECT_THAT(refused.error().text(), HasSubstr("in 120 of 200 messages; send z = sin(yaw / 2)"));
+}
+
+}  // namespace
+}  // namespace odomcalib::ros_poses_test
