@@ -121,7 +121,33 @@ Repeated repeated_in(const Topic& topic, Time time) {
   return found;
 }
 
+template <typename Value>
+std::size_t fit_missing(std::vector<Stamped<Value>>& messages) {
+  const auto is_set = [](const auto& one) { return one.stamp_ns != 0; };
+  const auto first = std::find_if(messages.begin(), messages.end(), is_set);
+  const auto unset = messages.size() - static_cast<std::size_t>(std::count_if(first, messages.end(), is_set));
+  if (2 * unset >= messages.size()) return 0;
+  std::size_t fitted = 0;
+  Stamped<Value>* near = &*first;
+  for (auto& one : messages) {
+    std::int64_t apart = 0, stamp = 0;
+    if (is_set(one)) {
+      near = &one;
+    } else if (!__builtin_sub_overflow(one.received_ns, near->received_ns, &apart) &&
+               !__builtin_add_overflow(near->stamp_ns, apart, &stamp)) {
+      one.stamp_ns = stamp == 0 ? 1 : stamp;
+      ++fitted;
+    }
+  }
+  return fitted;
+}
+
 }  // namespace
+
+std::size_t fit_missing_stamps(Topic& topic) {
+  return fit_missing(topic.scans) + fit_missing(topic.joints) + fit_missing(topic.yaw_rates) +
+         fit_missing(topic.poses);
+}
 
 Clock::Clock(const Chosen& chosen) {
   const std::vector<Topic*> topics = taken_topics(chosen);

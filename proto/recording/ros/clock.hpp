@@ -8,6 +8,10 @@
 
 namespace odomcalib::ros {
 
+/// Gives single messages without a stamp (0) the one that their reception has beside that of their neighbour:
+/// a simulation begins at 0. Where most have none, or none is near, they stay as they are. Returns how many.
+std::size_t fit_missing_stamps(Topic& topic);
+
 /// Stamps, unless those of a chosen topic are no times or those of two come from different clocks: then the
 /// times of reception of all, which are of one clock. Times count from a whole second.
 class Clock {

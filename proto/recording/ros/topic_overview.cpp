@@ -13,10 +13,13 @@ namespace {
 template <typename Value>
 void add_times(const std::vector<Stamped<Value>>& messages, TopicOverview& found) {
   std::vector<double> times;
-  for (const auto& one : messages) {
-    found.without_stamp += one.stamp_ns == 0 ? 1 : 0;
-    times.push_back(1e-9 * static_cast<double>(one.stamp_ns == 0 ? one.received_ns : one.stamp_ns));
-  }
+  for (const auto& one : messages)
+    if (one.stamp_ns != 0) times.push_back(1e-9 * static_cast<double>(one.stamp_ns));
+  found.without_stamp += messages.size() - times.size();
+  // As for the samples: single ones without a stamp are no time of their own.
+  if (times.size() <= messages.size() / 2)
+    for (const auto& one : messages)
+      if (one.stamp_ns == 0) times.push_back(1e-9 * static_cast<double>(one.received_ns));
   if (times.empty()) return;
   std::sort(times.begin(), times.end());
   found.begin = times.front();

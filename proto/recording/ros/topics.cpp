@@ -261,6 +261,14 @@ std::optional<Error> odometry_fault(const Topic& topic, const std::string& where
   return std::nullopt;
 }
 
+void fit_stamps(RecordingBuilder& builder, const Chosen& chosen) {
+  for (Topic* topic : taken_topics(chosen))
+    if (const std::size_t count = fit_missing_stamps(*topic); count > 0)
+      builder.choose(topic->header.name + ": " + std::to_string(count) + " of " +
+                     std::to_string(topic->count) +
+                     " messages have no stamp (0); they are put where they were received among the others");
+}
+
 std::optional<Error> fill_chosen(RecordingBuilder& builder, Chosen& chosen, const std::string& where) {
   const bool no_angles = chosen[Part::wheel_speeds] != nullptr || speeds_only(chosen);
   builder.take_from(middleware_of(chosen));
@@ -268,6 +276,7 @@ std::optional<Error> fill_chosen(RecordingBuilder& builder, Chosen& chosen, cons
   for (const Part part : {Part::odometry, Part::pose})
     if (const Topic* topic = chosen[part]; topic != nullptr && topic->kind == Kind::odometry)
       if (auto error = odometry_fault(*topic, where)) return error;
+  fit_stamps(builder, chosen);
   const Clock clock(chosen);
   if (!clock.remark().empty()) builder.choose(clock.remark());
   builder.count_from(clock.start());

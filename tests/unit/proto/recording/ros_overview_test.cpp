@@ -50,6 +50,25 @@ TEST(RosOverview, lists_topics_with_their_rates_frames_and_joints) {
   EXPECT_THAT(topic(overview, "/odom").frames, ElementsAre(HasSubstr(" -> ")));
 }
 
+TEST(RosOverview, takes_single_messages_without_a_stamp_for_no_gap) {
+  const RobotDescription robot = test::ros_robot();
+  for (const std::size_t without : {1U, 39U}) {
+    // A simulation: its stamps begin long before those of reception.
+    RosLog log = sim::ros_log(test::small_drive(), {.wire = Wire::ros1, .start_ns = 0});
+    std::size_t k = 0;
+    for (auto& message : log.messages) {
+      message.received_ns += kRosStart;
+      // The stamp follows the sequence number.
+      if (log.topics[message.topic].name == "/scan" && k++ < without) message.bytes.replace(4, 8, 8, '\0');
+    }
+    Overview overview;
+    (void)look(write_bag(log), overview, &robot);
+    const TopicOverview& scans = topic(overview, "/scan");
+    EXPECT_EQ(scans.without_stamp, without);
+    EXPECT_EQ(scans.longest_gap < 1.0, without == 1) << scans.longest_gap;
+  }
+}
+
 TEST(RosOverview, is_there_although_nothing_can_be_taken) {
   Overview overview;
   RosLog log =

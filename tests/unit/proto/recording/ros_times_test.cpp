@@ -121,6 +121,36 @@ TEST(RosTimes, of_a_recording_that_was_played_back_with_a_pause_are_the_stamps) 
   expect_stamps(log);
 }
 
+/// A simulation that begins at time 0, which stands for no stamp.
+TEST(RosTimes, of_single_messages_without_a_stamp_are_between_those_of_their_neighbours) {
+  for (const char* topic : {"/scan", "/joint_states", "/odom"})
+    for (const std::size_t wrong : {std::size_t{0}, std::size_t{7}}) {
+      Recording drive = small_drive();
+      for (Scan& scan : drive.scans) scan.t -= drive.scans.front().t;
+      const bool odometry = topic == std::string("/odom");
+      const RosLog stamped_log =
+          sim::ros_log(drive, {.wire = Wire::ros1, .joints = !odometry, .start_ns = 0});
+      RosLog log = stamped_log;
+      std::size_t k = 0;
+      for (auto& message : log.messages) {
+        message.received_ns += kRosStart;
+        // The stamp follows the sequence number.
+        if (log.topics[message.topic].name == topic && k++ == wrong) message.bytes.replace(4, 8, 8, '\0');
+      }
+      const auto found = value_of(read_ros(write_bag(log)));
+      const auto twin = value_of(read_ros(write_bag(stamped_log)));
+      EXPECT_TRUE(told(found, std::string(topic) + (wrong == 0 ? ": 1 of " : ": 2 of ")))
+          << all_told(found.choices);
+      EXPECT_FALSE(told(found, "times of reception"));
+      ASSERT_EQ(found.ticks.size(), twin.ticks.size()) << test::list_discarded(found);
+      ASSERT_EQ(found.scans.size(), 40U);
+      for (std::size_t i = 0; i < found.ticks.size(); ++i)
+        EXPECT_NEAR(found.ticks[i].t + found.time_zero, twin.ticks[i].t + twin.time_zero, 1e-6);
+      for (std::size_t i = 0; i < found.scans.size(); ++i)
+        EXPECT_NEAR(found.scans[i].t + found.time_zero, twin.scans[i].t + twin.time_zero, 1e-6);
+    }
+}
+
 TEST(RosTimes, of_reception_that_are_no_better_are_not_taken) {
   RosLog log = stamped([](std::int64_t time, int) { return time / kSecond_ns * kSecond_ns; });
   for (auto& message : log.messages) message.received_ns = message.received_ns / kSecond_ns * kSecond_ns;
