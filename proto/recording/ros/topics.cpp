@@ -19,14 +19,21 @@ constexpr std::int64_t kReceivedApart_ns = 100'000'000;
 
 constexpr const char* kNotItsType = ": does not hold what its type says";
 
+/// Whether there are numbers of each wheel that any message names.
 bool has_values(const Topic& topic, const std::vector<Places>& at, bool speeds) {
-  return std::any_of(topic.joints.begin(), topic.joints.end(), [&](const auto& one) {
-    const Places& place = at[one.value.names];
-    return (place[0] || place[1]) && !(speeds ? one.value.velocities : one.value.positions).empty();
-  });
+  std::array<bool, 2> named{}, valued{};
+  for (const auto& one : topic.joints)
+    for (std::size_t side = 0; side < named.size(); ++side)
+      if (const auto& place = at[one.value.names].at(side)) {
+        const auto& values = speeds ? one.value.velocities : one.value.positions;
+        named.at(side) = true;
+        valued.at(side) = valued.at(side) || (!values.empty() && std::isfinite(values[*place]));
+      }
+  return named != std::array{false, false} && valued == named;
 }
 
-/// Whether the angles of the wheels are one and the same in all messages, while there are speeds.
+/// Whether the angles of the wheels are one and the same in all messages that have them, while there are
+/// speeds.
 bool angles_stand_still(const Topic& topic, const std::vector<Places>& at) {
   std::array<std::optional<double>, 2> first;
   bool moves = false;
@@ -35,25 +42,25 @@ bool angles_stand_still(const Topic& topic, const std::vector<Places>& at) {
       const auto& place = at[one.value.names].at(side);
       if (!place || one.value.positions.empty()) continue;
       const double angle = one.value.positions[*place];
-      if (!first.at(side)) first.at(side) = angle;
-      if (angle != *first.at(side)) return false;
+      if (!first.at(side) && std::isfinite(angle)) first.at(side) = angle;
+      if (std::isfinite(angle) && angle != *first.at(side)) return false;
       moves = moves || (!one.value.velocities.empty() && std::abs(one.value.velocities[*place]) > 0.0);
     }
   }
   return moves;
 }
 
-/// Some drivers publish speeds only, or fill in the angles with a number.
+/// Some drivers publish speeds only, or fill in the angles with a number, or with none.
 bool speeds_only(const Chosen& chosen) {
-  const auto has_positions = [](const Topic* topic, const Joints& joints) {
-    if (topic == nullptr) return true;
+  const auto lacks_angles = [](const Topic* topic, const Joints& joints) {
+    if (topic == nullptr) return false;
     const auto at = places(*topic, joints);
-    return has_values(*topic, at, false) && !angles_stand_still(*topic, at);
+    return has_values(*topic, at, true) && (!has_values(*topic, at, false) || angles_stand_still(*topic, at));
   };
   const Joints& joints = chosen.joints;
-  if (chosen.right_wheel == nullptr) return !has_positions(chosen[Part::wheels], joints);
-  return !has_positions(chosen[Part::wheels], {joints.left, ""}) ||
-         !has_positions(chosen.right_wheel, {"", joints.right});
+  if (chosen.right_wheel == nullptr) return lacks_angles(chosen[Part::wheels], joints);
+  return lacks_angles(chosen[Part::wheels], {joints.left, ""}) ||
+         lacks_angles(chosen.right_wheel, {"", joints.right});
 }
 
 void add_half(RecordingBuilder& builder, Side side, SideSample sample, bool speeds) {

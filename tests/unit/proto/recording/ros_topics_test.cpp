@@ -161,6 +161,23 @@ TEST(RosTopics, angles_that_never_change_beside_speeds_give_speeds) {
   EXPECT_EQ(value_of(read_ros(mcap(filled_in(0.0)))).motion, MotionSource::wheels) << "the robot stood";
 }
 
+TEST(RosTopics, angles_that_are_no_numbers_beside_speeds_give_speeds) {
+  constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+  // One wheel has none or both have none, in all messages or but for some that never change.
+  for (const auto& [left, right, from] : {std::tuple{kNone, kNone, 0}, {kNone, 0.5, 0}, {kNone, kNone, 5}}) {
+    sim::RosLog log =
+        sim::ros_log(small_drive(), {.wire = Wire::cdr_little, .joints = false, .odometry = false});
+    for (int k = 0; k < 50; ++k) {
+      const std::vector<double> angles = k < from ? std::vector{0.0, 0.0} : std::vector{left, right + k};
+      test::add_joints(log, "/joint_states", test::kRosStart + 20 * test::kMillisecond_ns * k,
+                       {"left", "right"}, angles, {3.0, 2.0});
+    }
+    const auto result = value_of(read_ros(mcap(log)));
+    EXPECT_EQ(result.motion, MotionSource::wheel_speeds);
+    EXPECT_EQ(result.wheel_speeds.size(), 50U) << list_discarded(result);
+  }
+}
+
 TEST(RosTopics, joints_that_have_no_value_for_the_wheels_are_counted_among_them) {
   sim::RosLog log = joints_log({"left", "right"});
   for (int k = 0; k < 5; ++k)
