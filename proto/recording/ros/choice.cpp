@@ -42,7 +42,14 @@ class Choosing {
   std::vector<Topic*> candidates(Part part) {
     std::vector<Topic*> out;
     for (Topic& topic : collector_.topics())
-      if (serves(topic, part) && topic.count > topic.malformed) out.push_back(&topic);
+      if (topic.kind == kind_for(part) && topic.count > topic.malformed) out.push_back(&topic);
+    // Without a rotation in any message it is taken only where there is no other, and told for that.
+    const auto is_of_use = [](const Topic* topic) {
+      return topic->poses.empty() || std::any_of(topic->poses.begin(), topic->poses.end(),
+                                                 [](const auto& one) { return !std::isnan(one.value.yaw); });
+    };
+    if (std::any_of(out.begin(), out.end(), is_of_use))
+      std::erase_if(out, [&](const Topic* topic) { return !is_of_use(topic); });
     return out;
   }
 
@@ -267,8 +274,7 @@ class Choosing {
     if (chosen_[Part::scan] == nullptr && scans.size() > 1 && chosen_[Part::pose] == nullptr)
       return ambiguous(Part::scan, scans);
     if (chosen_[Part::pose] != nullptr) return std::nullopt;
-    std::vector<Topic*> poses = candidates(Part::pose);
-    std::erase_if(poses, [](const Topic* topic) { return topic->kind != Kind::pose; });
+    const std::vector<Topic*> poses = candidates(Part::pose);
     if (chosen_[Part::scan] == nullptr && poses.size() > 1) return ambiguous(Part::pose, poses);
     if (chosen_[Part::scan] == nullptr && poses.size() == 1) chosen_[Part::pose] = poses.front();
     for (const Topic* topic : poses)

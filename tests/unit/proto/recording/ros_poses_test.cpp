@@ -11,12 +11,14 @@ namespace {
 
 using sim::RosLog;
 using sim::Wire;
+using test::all_told;
 using test::discarded_like;
 using test::kMillisecond_ns;
 using test::kRosStart;
 using test::list_discarded;
 using test::read_ros;
 using test::small_drive;
+using test::told;
 using ::testing::HasSubstr;
 
 // Bytes from there to the end of nav_msgs/Odometry: two covariances, six numbers of the twist, a quaternion.
@@ -37,6 +39,8 @@ RosLog odometry_log(Change change, Wire wire = Wire::cdr_little) {
     if (log.topics[message.topic].name == "/odom") change(message.bytes, k++);
   return log;
 }
+
+void forget_orientation(std::string& bytes, std::size_t) { overwrite(bytes, kOrientation, {0, 0, 0, 0}); }
 
 /// How many there were, of a kind of which some were left out.
 std::size_t all_of(const Recording& recording, const std::string& what) {
@@ -100,6 +104,28 @@ TEST(RosPoses, most_of_which_are_without_a_rotation_are_refused_for_that) {
   ASSERT_FALSE(refused.ok());
   EXPECT_THAT(refused.error().text(), HasSubstr("the orientation in /odom is no rotation"));
   EXPECT_THAT(refused.error().text(), HasSubstr("in 120 of 200 messages; send z = sin(yaw / 2)"));
+}
+
+TEST(RosPoses, none_of_which_has_a_rotation_are_told_for_that) {
+  for (const Wire wire : {Wire::ros1, Wire::cdr_little}) {
+    const auto refused = read_ros(write_mcap(odometry_log(forget_orientation, wire)));
+    ASSERT_FALSE(refused.ok());
+    EXPECT_THAT(refused.error().text(), HasSubstr("the orientation in /odom is no rotation"));
+    EXPECT_THAT(refused.error().text(), HasSubstr("in 200 of 200 messages"));
+  }
+  const auto found = value_of(read_ros(write_mcap(pose_log(false))));
+  EXPECT_EQ(discarded_like(found, "pose", "no rotation"), 20U) << list_discarded(found);
+  EXPECT_FALSE(told(found, "no topic with scans or poses")) << all_told(found.choices);
+}
+
+TEST(RosPoses, none_of_which_has_a_rotation_leave_the_choice_to_others) {
+  RosLog log = odometry_log([](std::string&, std::size_t) {});
+  std::string bytes = encode_odometry(log.wire, {kRosStart, "odom"}, "base_link", {0, 0, 0});
+  forget_orientation(bytes, 0);
+  log.add("/other_odom", "nav_msgs/Odometry", kRosStart, std::move(bytes));
+  const auto found = value_of(read_ros(write_mcap(log)));
+  EXPECT_EQ(found.odometry.size(), 200U);
+  EXPECT_EQ(discarded_like(found, "message", "/other_odom was not taken"), 1U) << list_discarded(found);
 }
 
 }  // namespace
