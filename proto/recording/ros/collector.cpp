@@ -91,6 +91,7 @@ bool add_pose(Topic& topic, std::int64_t received, std::string_view bytes) {
   const auto pose = topic.kind == Kind::odometry ? decode_odometry(bytes, topic.encoding)
                                                  : decode_pose(bytes, topic.encoding);
   if (!pose) return false;
+  topic.moves = topic.moves || pose->moves;
   topic.poses.push_back({pose->header.stamp_ns,
                          received,
                          {0.0, pose->x, pose->y, pose->yaw},

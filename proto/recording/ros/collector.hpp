@@ -57,6 +57,7 @@ struct Topic {
   std::vector<Stamped<JointValues>> joints;
   std::vector<Stamped<double>> yaw_rates;
   std::vector<Stamped<PoseSample>> poses;  ///< t is not set, yaw NaN: no rotation; odometry and pose
+  bool moves = false;                      ///< by the twist of a message
   std::size_t unusable = 0;                ///< transforms without a place or a rotation, of all messages
   std::vector<Transform> transforms;  ///< of /tf_static, that of a child as it came last; of a description
 };

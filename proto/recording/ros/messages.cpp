@@ -216,7 +216,12 @@ std::optional<PoseMessage> decode_odometry(std::string_view bytes, Encoding enco
   out.header = reader.header();
   out.child_frame = reader.text();
   read_pose(reader, out);
-  return if_whole(reader, std::move(out));
+  if (!reader.ok()) return std::nullopt;
+  reader.numbers<double, 36>();  // covariance
+  const auto twist = reader.numbers<double, 6>();
+  // A message that ends before its twist is a pose none the less.
+  out.moves = reader.ok() && (std::abs(twist[0]) > 0.0 || std::abs(twist[5]) > 0.0);
+  return out;
 }
 
 std::optional<PoseMessage> decode_pose(std::string_view bytes, Encoding encoding) {

@@ -59,6 +59,7 @@ struct PoseMessage {
   std::string child_frame;  ///< Odometry only
   double x = 0.0, y = 0.0;  ///< m
   double yaw = 0.0;         ///< rad, of the quaternion; NaN where that is no rotation
+  bool moves = false;       ///< the twist says that the robot drives or turns; Odometry only
 };
 
 /// One of tf2_msgs/TFMessage: pose of `child` in `frame`.

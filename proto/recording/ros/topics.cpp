@@ -265,6 +265,14 @@ std::optional<Error> odometry_fault(const Topic& topic, const std::string& where
                  no_rotation(topic) + ", in " + std::to_string(lost) + " of " + std::to_string(poses.size()) +
                      " messages",
                  where, "send z = sin(yaw / 2) and w = cos(yaw / 2), and record again"};
+  // Drivers that leave the integration to others fill in the twist alone.
+  const bool stands = std::all_of(poses.begin(), poses.end(), [&](const auto& one) {
+    const PoseSample &pose = one.value, &first = poses.front().value;
+    return pose.x == first.x && pose.y == first.y && pose.yaw == first.yaw;
+  });
+  if (topic.moves && stands)
+    return Error{ErrorCode::empty, "the pose in " + topic.header.name + " never changes, its twist does",
+                 where, "record odometry whose pose is integrated, or the joint states of the wheels"};
   return std::nullopt;
 }
 

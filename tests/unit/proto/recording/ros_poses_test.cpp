@@ -1,4 +1,4 @@
-// Poses of ROS recordings that are none: orientations that are no rotation.
+// Poses of ROS recordings that are none: orientations that are no rotation, and a pose that nobody moves.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -24,6 +24,7 @@ using ::testing::HasSubstr;
 // Bytes from there to the end of nav_msgs/Odometry: two covariances, six numbers of the twist, a quaternion.
 constexpr std::size_t kTwist = (6 + 36) * sizeof(double);
 constexpr std::size_t kOrientation = (4 + 36) * sizeof(double) + kTwist;
+constexpr std::size_t kPosition = 3 * sizeof(double) + kOrientation;
 
 /// Numbers of a little-endian message, so many bytes before its end.
 void overwrite(std::string& bytes, std::size_t before_end, const std::vector<double>& numbers) {
@@ -41,6 +42,12 @@ RosLog odometry_log(Change change, Wire wire = Wire::cdr_little) {
 }
 
 void forget_orientation(std::string& bytes, std::size_t) { overwrite(bytes, kOrientation, {0, 0, 0, 0}); }
+
+/// The robot stays where it is and drives none the less.
+void stay_at_origin(std::string& bytes, std::size_t) {
+  overwrite(bytes, kPosition, {0, 0, 0, 0, 0, 0, 1});
+  overwrite(bytes, kTwist, {0.5, 0, 0, 0, 0, 0.1});
+}
 
 /// How many there were, of a kind of which some were left out.
 std::size_t all_of(const Recording& recording, const std::string& what) {
@@ -126,6 +133,27 @@ TEST(RosPoses, none_of_which_has_a_rotation_leave_the_choice_to_others) {
   const auto found = value_of(read_ros(write_mcap(log)));
   EXPECT_EQ(found.odometry.size(), 200U);
   EXPECT_EQ(discarded_like(found, "message", "/other_odom was not taken"), 1U) << list_discarded(found);
+}
+
+TEST(RosPoses, that_never_change_while_the_twist_does_are_told) {
+  for (const Wire wire : {Wire::ros1, Wire::cdr_little}) {
+    const std::string bytes = write_mcap(odometry_log(stay_at_origin, wire));
+    for (const TopicChoices& topics : {TopicChoices{}, TopicChoices{{"odometry", "/odom", {}}}}) {
+      const auto refused = read_ros(bytes, topics);
+      ASSERT_FALSE(refused.ok());
+      EXPECT_THAT(refused.error().text(), HasSubstr("the pose in /odom never changes, its twist does"));
+    }
+  }
+  EXPECT_FALSE(read_ros(write_mcap(odometry_log(stay_at_origin)), {{"pose", "/odom", {}}}).ok());
+  const auto stood = read_ros(write_mcap(odometry_log([](std::string& bytes, std::size_t) {
+    stay_at_origin(bytes, 0);
+    overwrite(bytes, kTwist, {0, 0, 0, 0, 0, 0});
+  })));
+  EXPECT_TRUE(stood.ok()) << "whether the robot moved is asked later";
+  const auto moved = read_ros(write_mcap(odometry_log([](std::string& bytes, std::size_t) {
+    overwrite(bytes, kTwist, {0.5, 0, 0, 0, 0, 0});
+  })));
+  EXPECT_TRUE(moved.ok());
 }
 
 }  // namespace
