@@ -355,6 +355,7 @@ void RecordingBuilder::add_odometry(PoseSample sample) {
 }
 
 void RecordingBuilder::add_scan(Scan scan) {
+  list_first_sent_first(scan);
   if (!is_stamped("scan", scan.t)) return;
   if (const char* problem = scan_problem(scan)) return discard("scan", problem);
   // Nothing is measured with them.

@@ -139,6 +139,17 @@ const RangeUnit* range_unit_of_reason(const std::string& reason) {
   return unit == kRangeUnits.end() ? nullptr : unit;
 }
 
+void list_first_sent_first(Scan& scan) {
+  if (!(scan.time_increment.value_or(0.0) < 0.0) || !scan.times.empty() || scan.ranges.empty()) return;
+  const auto steps = static_cast<double>(scan.ranges.size() - 1);
+  scan.t += steps * *scan.time_increment;
+  scan.angle_min += steps * scan.angle_increment;
+  scan.angle_increment = -scan.angle_increment;
+  scan.time_increment = -*scan.time_increment;
+  for (auto* values : {&scan.ranges, &scan.angles, &scan.intensities})
+    std::reverse(values->begin(), values->end());
+}
+
 BeamProblems clean_scan(Scan& scan) {
   complete_scan(scan);
   list_in_time_order(scan);

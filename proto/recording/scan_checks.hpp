@@ -29,6 +29,10 @@ const RangeUnit* range_unit_of_reason(const std::string& reason);
 /// Reason of a discarded beam whose range lies outside the limits.
 std::string reason_outside_limits(const RangeUnit* unit);
 
+/// A negative time_increment says that the last beam was sent first: lists the beams the other way round,
+/// from the time of that one on.
+void list_first_sent_first(Scan& scan);
+
 /// Turns ranges that are no distance into 0 ("no reading") and counts them; replaces impossible limits and
 /// increments by "unknown"; lists beams that state their angles and times in order of time; a lidar that
 /// states no range_max gets its farthest reading.

@@ -33,6 +33,27 @@ ErrorCode code_of(const Result<Recording>& result) {
   return result.ok() ? ErrorCode::usage : result.error().code;
 }
 
+TEST(Recording, beams_that_are_sent_from_the_last_to_the_first_are_listed_in_that_order) {
+  const std::string ends = R"("range_max":8,"time_increment":-0.25,"ranges":[1,2,3],"intensities":[7,8,9]})";
+  const auto r = value_of(read_text(
+      std::string(test::kRobotLine) + "\n" + R"({"type":"scan","t":5,"angle_min":1,"angle_increment":-0.5,)" +
+      ends + "\n" + R"({"type":"scan","t":6,"angles":[1,0.5,0.25],)" + ends + "\n" +
+      R"({"type":"scan","t":7,"angles":[1,0.5,0.25],"times":[0,0.1,0.2],)" + ends));
+  ASSERT_EQ(r.scans.size(), 3U) << list_discarded(r);
+  for (const std::size_t k : {0U, 1U}) {
+    EXPECT_EQ(r.scans[k].t, 4.5 + static_cast<double>(k));
+    EXPECT_EQ(r.scans[k].time_increment, 0.25);
+    EXPECT_EQ(r.scans[k].ranges, (std::vector<float>{3, 2, 1}));
+    EXPECT_EQ(r.scans[k].intensities, (std::vector<float>{9, 8, 7}));
+  }
+  EXPECT_EQ(r.scans[0].angle_min, 0.0);
+  EXPECT_EQ(r.scans[0].angle_increment, 0.5);
+  EXPECT_EQ(r.scans[1].angles, (std::vector<float>{0.25F, 0.5F, 1}));
+  EXPECT_EQ(r.scans[2].t, 7.0);
+  EXPECT_EQ(r.scans[2].ranges, (std::vector<float>{1, 2, 3})) << "times take the place of time_increment";
+  EXPECT_EQ(r.discarded.size(), 0U) << list_discarded(r);
+}
+
 TEST(Recording, reads_every_kind_of_line) {
   const auto r = value_of(read_text(
       std::string(
