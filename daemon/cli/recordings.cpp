@@ -12,18 +12,26 @@ namespace odomcalib::cli {
 
 namespace {
 
-bool same_ticks(const Recording& a, const Recording& b) {
-  const auto same = [](const TickSample& x, const TickSample& y) {
-    return x.t == y.t && x.left == y.left && x.right == y.right;
-  };
-  return !a.ticks.empty() && std::equal(a.ticks.begin(), a.ticks.end(), b.ticks.begin(), b.ticks.end(), same);
+template <typename Sample, typename Same>
+bool all_same(const std::vector<Sample>& a, const std::vector<Sample>& b, Same same) {
+  const auto at_once = [&](const Sample& x, const Sample& y) { return x.t == y.t && same(x, y); };
+  return !a.empty() && std::equal(a.begin(), a.end(), b.begin(), b.end(), at_once);
 }
 
-/// The same bytes, or the same counts at the same times: packed, or with other scans, they are still one
-/// drive, and one drive is no independent proof of itself.
+/// The same counts, scans or reference poses at the same times.
+bool same_samples(const Recording& a, const Recording& b) {
+  return all_same(a.ticks, b.ticks,
+                  [](const auto& x, const auto& y) { return x.left == y.left && x.right == y.right; }) ||
+         all_same(a.scans, b.scans, [](const auto& x, const auto& y) { return x.ranges == y.ranges; }) ||
+         all_same(a.poses, b.poses,
+                  [](const auto& x, const auto& y) { return x.x == y.x && x.y == y.y && x.yaw == y.yaw; });
+}
+
+/// Packed, with other scans, or with the wheels by another topic, it is still one drive, and one drive is no
+/// independent proof of itself.
 const Recording* same_drive(const std::vector<Recording>& recordings, const Recording& next) {
   for (const Recording& one : recordings)
-    if (one.sha256 == next.sha256 || same_ticks(one, next)) return &one;
+    if (one.sha256 == next.sha256 || same_samples(one, next)) return &one;
   return nullptr;
 }
 

@@ -319,6 +319,23 @@ TEST_F(CommandLine, one_drive_given_twice_is_refused) {
   }
   write("later.jsonl", recording(1000.0));
   EXPECT_NE(ctl("solve drive.jsonl later.jsonl").status, 2);
+  // The same scans or reference poses beside another record of the wheels.
+  const auto drive = [](const std::string& reference, int more) {
+    std::string text = recording(0.0).substr(0, recording(0.0).find('\n') + 1);
+    for (int i = 0; i <= 100; ++i) {
+      const json ticks = {
+          {"type", "ticks"}, {"t", 0.1 * i}, {"left", 174 * i + more * (i % 2)}, {"right", i}};
+      json other = {{"type", reference}, {"t", 0.1 * i}, {"x", 0.02 * i}, {"y", 0.0}, {"yaw", 0.0}};
+      other.update({{"angle_min", -1}, {"angle_increment", 1}, {"ranges", {1.0 + 0.01 * i, 2, 3}}});
+      text += ticks.dump() + "\n" + other.dump() + "\n";
+    }
+    return text;
+  };
+  for (const char* reference : {"pose", "scan"}) {
+    write("one.jsonl", drive(reference, 0));
+    write("other.jsonl", drive(reference, 1));
+    EXPECT_THAT(ctl("solve one.jsonl other.jsonl").err, HasSubstr("same drive")) << reference;
+  }
 }
 
 TEST_F(CommandLine, a_refused_calibration_configures_no_robot_and_leads_only_with_a_warning) {
