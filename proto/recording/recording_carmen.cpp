@@ -256,9 +256,11 @@ void assume_times(Log& log, RecordingBuilder& builder) {
 
 /// Large stamps lose precision as seconds since 1970: count from the whole second of the first.
 void shift_times(Log& log, RecordingBuilder& builder) {
-  const auto first =
-      std::find_if(log.scans.begin(), log.scans.end(), [](const Scan& scan) { return is_stamped(scan.t); });
-  const double start = std::floor(first->t);
+  const auto stamped = [](const auto& one) { return is_stamped(one.t); };
+  const auto first = std::find_if(log.scans.begin(), log.scans.end(), stamped);
+  const auto pose = std::find_if(log.odometry.begin(), log.odometry.end(), stamped);
+  if (first == log.scans.end() && pose == log.odometry.end()) return;
+  const double start = std::floor(first != log.scans.end() ? first->t : pose->t);
   if (start < 1e6) return;
   builder.count_from(start);
   for (auto& scan : log.scans) scan.t -= start;
@@ -296,15 +298,20 @@ class CarmenCounts {
   double left_ = 0.0, right_ = 0.0;  // m
 };
 
-void add_counts(const Log& log, const RobotDescription& robot, RecordingBuilder& builder) {
-  CarmenCounts counts(robot);
+/// Counts of the encoders where their resolution is known; else the motion is that of the odometry.
+void add_motion(const Log& log, const RobotDescription& robot, RecordingBuilder& builder) {
   const auto stamped = std::count_if(log.odometry.begin(), log.odometry.end(),
                                      [](const Odometry& one) { return is_stamped(one.t); });
   if (stamped < 2)
     builder.discard("message", not_taken(kOdomLine) + ": fewer than two have a time stamp",
                     log.odometry.size());
   const auto& odometry = stamped < 2 ? log.scan_odometry : log.odometry;
-  for (const auto& sample : odometry) builder.add_ticks(counts.at(sample));
+  CarmenCounts counts(robot);
+  for (const auto& sample : odometry)
+    if (robot.ticks_per_rev == 0.0)
+      builder.add_odometry({sample.t, sample.pose[0], sample.pose[1], sample.pose[2]});
+    else
+      builder.add_ticks(counts.at(sample));
 }
 
 }  // namespace
@@ -329,14 +336,14 @@ void read_carmen(std::string_view text, const RobotDescription* robot, Recording
     read_carmen_line(text.substr(0, end), last, log, builder);
     text.remove_prefix(last ? text.size() : end + 1);
   }
-  if (log.scans.empty()) return;
   if (has_times(log)) drop_open_end(log, builder);
   drop_doubled_scans(log, builder);
-  if (!has_times(log)) assume_times(log, builder);
+  if (!log.scans.empty() && !has_times(log)) assume_times(log, builder);
   shift_times(log, builder);
   RobotDescription description = robot != nullptr ? *robot : RobotDescription{};
   if (!description.lidar_pose) description.lidar_pose = log.lidar_pose;
-  if (!check_robot(description, "")) add_counts(log, description, builder);
+  if (description.ticks_per_rev == 0.0 || !check_robot(description, ""))
+    add_motion(log, description, builder);
   for (auto& scan : log.scans) builder.add_scan(std::move(scan));
   builder.add_robot(std::move(description));
 }

@@ -313,6 +313,29 @@ TEST(CarmenLog, without_any_stamp_gets_one_clock_for_all) {
   }
 }
 
+/// It holds odometry, of which the resolution of the encoders need not be known, as of any other.
+TEST(CarmenLog, needs_no_resolution_of_the_encoders_and_no_scans) {
+  auto robot = test::example_robot();
+  robot.ticks_per_rev = 0.0;
+  std::string odometry, log;
+  for (int k = 0; k < 10; ++k) {
+    const std::string x = std::to_string(0.1 * k);
+    odometry += "ODOM " + x + " 0 0 0 0 0" + carmen_stamp(k) + "\n";
+    log += carmen_scan(k, carmen_stamp(k)) + "\n";
+  }
+  for (const std::string& text : {log, odometry, odometry + log}) {
+    const auto r = value_of(read_text(text, &robot));
+    EXPECT_EQ(r.motion, MotionSource::odometry);
+    EXPECT_EQ(r.time_zero, 1000000000.0);
+    ASSERT_EQ(r.ticks.size(), 10U) << list_discarded(r);
+    EXPECT_EQ(r.ticks.back().t, 9.25);
+    EXPECT_NEAR(static_cast<double>(r.ticks.back().left) / r.robot.ticks_per_rev,
+                0.9 / (std::numbers::pi * 0.154), 1e-5);
+  }
+  robot.track_width = 0.0;
+  EXPECT_EQ(read_text(log, &robot).error().code, ErrorCode::missing_units);
+}
+
 TEST(CarmenLog, lines_that_are_not_used_are_told_by_their_names) {
   const auto robot = test::example_robot();
   std::string log = "# of a test\n\nPARAM a b 0 host 0\nODOM 0 0 0 0 0 0" + carmen_stamp(0) + "\n";
