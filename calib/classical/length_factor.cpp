@@ -182,11 +182,16 @@ Cause of_wheels(double ratio, const Measured& measured) {
   const std::string values = values_of(measured.motion);
   Found found{ratio, factor_for(kOfDiameters, ratio)};
   if (found.named == nullptr && is_gear(ratio)) found.named = &kGear;
+  const bool are_counts = 1.0 / ratio > settings::kCountsFactor && measured.motion != MotionSource::odometry;
   return {of_both(ratio) + ": " + values + " are " + number(1.0 / ratio) + " times as large as the wheels'" +
-              found.because(),
+              (are_counts ? ": they look like encoder counts, some " + number(2.0 * math::kPi / ratio) +
+                                " a turn of the wheel"
+                          : found.because()),
           "multiply " + values + " by " + to_type(found, found.ratio()) +
-              (found.is_exact() ? "" : kOnlyAbout) + "; or set wheel_diameter to " +
-              diameter_for(found.ratio(), measured.robot) + "; a tape at the wheel tells which"};
+              (found.is_exact() ? "" : kOnlyAbout) +
+              (are_counts ? ""
+                          : "; or set wheel_diameter to " + diameter_for(found.ratio(), measured.robot) +
+                                "; a tape at the wheel tells which")};
 }
 
 Cause of_track(const Found& found, const RobotDescription& robot) {

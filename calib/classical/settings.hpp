@@ -15,6 +15,9 @@ inline constexpr double kSameFactor = 0.12;
 /// Ratio, or its inverse, of both diameters from which a gear is named where the table knows nothing. Chosen,
 /// insensitive.
 inline constexpr double kGearFactor = 2.0;
+/// Ratio of angles, or speeds, to those of the wheels from which they are counts. Chosen: encoders have more
+/// than 600 counts a turn with their gear, and gears of robots that are bought are mostly below 1 : 100.
+inline constexpr double kCountsFactor = 100.0;
 /// Ratio, or its inverse, by which the encoders of two wheels count unlike each other. Chosen, sensitive.
 inline constexpr double kUnlikeCounts = 2.0;
 

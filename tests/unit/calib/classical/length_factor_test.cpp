@@ -89,6 +89,16 @@ TEST(LengthFactor, speaks_of_a_gear_where_no_unit_fits) {
   EXPECT_EQ(told({1.1, 1.1, 1.0}, false, MotionSource::wheels), "") << "no unit is so near to rad";
 }
 
+TEST(LengthFactor, takes_angles_that_are_a_hundred_times_too_large_for_counts) {
+  for (const MotionSource motion : {MotionSource::wheels, MotionSource::wheel_speeds}) {
+    const std::string text = told({1.0 / 667.0, 1.0 / 667.0, 1.0}, false, motion);
+    EXPECT_TRUE(holds(text, "encoder counts, some 4190 a turn")) << text;
+    EXPECT_FALSE(holds(text, "gear")) << text;
+    EXPECT_FALSE(holds(text, "set wheel_diameter")) << text;
+  }
+  EXPECT_TRUE(holds(told({1.0 / 90.0, 1.0 / 90.0, 1.0}, false, MotionSource::wheels), "before a gear"));
+}
+
 TEST(LengthFactor, names_the_track_alone_and_one_wheel_alone) {
   EXPECT_TRUE(holds(told({1.0, 1.0, 1.98}), "from the middle of the robot"));
   EXPECT_TRUE(holds(told({1.0, 1.0, 1.98}), "about 0.8 m"));
