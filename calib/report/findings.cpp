@@ -168,7 +168,9 @@ Outliers outliers_of(const Findings& found) {
   const auto& data = found.fit.dataset.data;
   const auto& [effects, fit] = found.outcome.model;
   Outliers outliers = report::trace_outliers(data, fit);
-  if (outliers) outliers->cause = report::cause_of_outliers(data, effects, fit);
+  if (!outliers) return outliers;
+  outliers->of_poses = found.fit.dataset.reference_is_base();
+  if (!outliers->of_poses) outliers->cause = report::cause_of_outliers(data, effects, fit);
   return outliers;
 }
 

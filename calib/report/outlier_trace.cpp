@@ -287,7 +287,7 @@ OutlierCause cause_of_outliers(std::span<const measurement::FitData> data, const
 std::optional<OutlierTrace> trace_outliers(std::span<const measurement::FitData> data,
                                            const estimation::FitResult& fit) {
   const std::vector<std::size_t> events = events_of(fit);
-  OutlierTrace trace{fit.discarded, fit.outlier.size(), {}, 1.0, 0.0, 0.0, {}};
+  OutlierTrace trace{fit.discarded, fit.outlier.size(), {}, 1.0, 0.0, 0.0, {}, false};
   if (events.size() < settings::kFewestEvents ||
       static_cast<double>(trace.outliers) < settings::kFewestOutliers * static_cast<double>(trace.pairs))
     return std::nullopt;
@@ -296,8 +296,9 @@ std::optional<OutlierTrace> trace_outliers(std::span<const measurement::FitData>
 }
 
 std::string to_text(const OutlierTrace& trace) {
-  std::string text = std::to_string(trace.outliers) + " of " + std::to_string(trace.pairs) +
-                     " pairs of scans contradict all others by more than five deviations and are left out";
+  std::string text = std::to_string(trace.outliers) + " of " + std::to_string(trace.pairs) + " pairs of " +
+                     (trace.of_poses ? "poses" : "scans") +
+                     " contradict all others by more than five deviations and are left out";
   if (trace.depends_on.empty()) text += "; nothing that was observed goes with them";
   for (std::size_t k = 0; k < trace.depends_on.size(); ++k)
     text += (k > 0 ? ", " : "; they go with ") + to_string(trace.depends_on[k]);

@@ -35,7 +35,8 @@ struct OutlierTrace {
       depends_on;                 ///< that single out these pairs, the best first; empty: none does
   double p_value = 1.0;           ///< of the best of all covariates, by permutation
   double begin = 0.0, end = 0.0;  ///< s, of what goes with time: when
-  OutlierCause cause;             ///< filled by cause_of_outliers
+  OutlierCause cause;             ///< filled by cause_of_outliers, where scans lie in a map
+  bool of_poses = false;          ///< the reference, not of scans
 };
 
 /// nullopt when so few pairs are left out that noise and single bad matches account for them. Neighbours

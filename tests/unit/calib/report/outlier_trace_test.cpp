@@ -117,6 +117,10 @@ TEST(OutlierCause, nothing_is_said_without_a_map) {
   trace->cause = cause_of_outliers({&data, 1}, {}, fit.value());
   EXPECT_EQ(trace->cause.placed, 0U);
   EXPECT_EQ(to_text(*trace).find("map"), std::string::npos) << to_text(*trace);
+  EXPECT_NE(to_text(*trace).find("pairs of scans"), std::string::npos) << to_text(*trace);
+  trace->of_poses = true;
+  EXPECT_NE(to_text(*trace).find("pairs of poses"), std::string::npos) << to_text(*trace);
+  trace->of_poses = false;
   trace->cause = {14, 12, -0.0123, 0.0};
   EXPECT_NE(
       to_text(*trace).find("the map confirms 12 of 14: there the robot moved otherwise than its wheels, "
