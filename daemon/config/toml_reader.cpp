@@ -5,10 +5,13 @@
 #include <toml++/toml.h>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
+#include <numbers>
 #include <regex>
 #include <set>
 #include <sstream>
+#include <string_view>
 #include <vector>
 
 #include "proto/file_bytes.hpp"
@@ -79,13 +82,43 @@ std::string syntax_remedy(const std::string& text, std::size_t line) {
   return "correct the TOML syntax";
 }
 
-/// "; 150 looks like mm: write 0.15" of a length that a millimetre's factor makes one.
-std::string in_mm(const std::string& key, double value, const config::settings::Bounds& allowed) {
+constexpr double kNoNumber = std::numeric_limits<double>::quiet_NaN();
+
+bool is_within(double value, const config::settings::Bounds& allowed) {
+  return std::isfinite(value) && value >= allowed.least && value <= allowed.most;
+}
+
+/// "; 150 looks like mm: write 0.15" of a value that another usual unit makes one.
+std::string in_other_unit(double value, const config::settings::Bounds& allowed) {
   constexpr double kMetresInMm = 1e-3;
-  const bool is_length = key.ends_with("diameter") || key.ends_with("track_width");
-  const double metres = kMetresInMm * value;
-  if (!is_length || !(value > allowed.most) || metres < allowed.least || metres > allowed.most) return "";
-  return fmt::format(" m; {} looks like mm: write {}", value, metres);
+  const bool is_length = std::string_view(allowed.unit) == "m";
+  const double factor = is_length ? kMetresInMm : std::numbers::pi / 180.0;
+  if (std::string_view(allowed.unit).empty() || !is_within(factor * value, allowed)) return "";
+  return fmt::format("; {} looks like {}: write {:.6g}", value, is_length ? "mm" : "degrees", factor * value);
+}
+
+/// @param value as the file has it; NaN where it is no number
+std::string range_text(double value, const config::settings::Bounds& allowed) {
+  return fmt::format("from {:.10g} to {:.10g}{}{}{}", allowed.least, allowed.most,
+                     std::string_view(allowed.unit).empty() ? "" : " ", allowed.unit,
+                     in_other_unit(value, allowed));
+}
+
+/// Description of what the file should have; empty: it has a pose, which is `pose` now.
+std::string take_pose(const toml::array* array, std::array<double, 3>& pose) {
+  constexpr std::array kBounds = {config::settings::kLidarPlace_m, config::settings::kLidarPlace_m,
+                                  config::settings::kLidarYaw_rad};
+  constexpr std::array kNames = {"x", "y", "yaw"};
+  bool numbers = array != nullptr && array->size() == pose.size();
+  for (std::size_t i = 0; numbers && i < pose.size(); ++i) {
+    pose.at(i) = (*array)[i].value<double>().value_or(kNoNumber);
+    numbers = std::isfinite(pose.at(i));
+  }
+  if (!numbers) return "a list of three numbers: x in m, y in m, yaw in rad";
+  for (std::size_t i = 0; i < pose.size(); ++i)
+    if (!is_within(pose.at(i), kBounds.at(i)))
+      return fmt::format("a place of a lidar: {} is {}", kNames.at(i), range_text(pose.at(i), kBounds.at(i)));
+  return "";
 }
 
 }  // namespace
@@ -120,9 +153,8 @@ double TomlReader::number(const std::string& key, double otherwise, const config
   const auto node = state_->find(key);
   if (!node) return otherwise;
   const auto value = node.value<double>();
-  if (value && std::isfinite(*value) && *value >= allowed.least && *value <= allowed.most) return *value;
-  state_->complain(key, fmt::format("a number from {} to {}{}", allowed.least, allowed.most,
-                                    value ? in_mm(key, *value, allowed) : ""));
+  if (value && is_within(*value, allowed)) return *value;
+  state_->complain(key, "a number " + range_text(value.value_or(kNoNumber), allowed));
   return otherwise;
 }
 
@@ -145,16 +177,10 @@ bool TomlReader::flag(const std::string& key, bool otherwise) {
 std::optional<std::array<double, 3>> TomlReader::pose(const std::string& key) {
   const auto node = state_->find(key);
   if (!node) return std::nullopt;
-  const auto* array = node.as_array();
   std::array<double, 3> pose{};
-  bool good = array != nullptr && array->size() == pose.size();
-  for (std::size_t i = 0; good && i < pose.size(); ++i) {
-    const auto value = (*array)[i].value<double>();
-    good = value && std::isfinite(*value);
-    if (good) pose.at(i) = *value;
-  }
-  if (good) return pose;
-  state_->complain(key, "a list of three numbers: x in m, y in m, yaw in rad");
+  const std::string wanted = take_pose(node.as_array(), pose);
+  if (wanted.empty()) return pose;
+  state_->complain(key, wanted);
   return std::nullopt;
 }
 

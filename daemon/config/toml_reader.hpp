@@ -29,7 +29,7 @@ class TomlReader {
   double number(const std::string& key, double otherwise, const config::settings::Bounds& allowed);
   std::string text(const std::string& key, const std::string& otherwise);
   bool flag(const std::string& key, bool otherwise);
-  /// [x, y, yaw], all finite.
+  /// [x, y, yaw] of a lidar in the base: m, m, rad, all within the bounds of the settings.
   std::optional<std::array<double, 3>> pose(const std::string& key);
 
   /// Whether the file has this section.

@@ -48,7 +48,7 @@ unsigned seed() {
 }
 
 void expect_within_bounds(const Config& config) {
-  for (const double number : config.lidar_pose) ASSERT_TRUE(std::isfinite(number));
+  for (const double number : config.lidar_pose) ASSERT_LE(std::abs(number), 6.3);
   const RobotDescription& robot = config.robot;
   for (const double length : {robot.left_wheel_diameter, robot.right_wheel_diameter, robot.track_width})
     ASSERT_TRUE(length == 0.0 || (length >= 1e-3 && length <= 10.0)) << length;
@@ -70,6 +70,36 @@ TEST(ConfigFile, that_is_good_is_read) {
   const auto config = value_of(parse_config(kGood, "test.toml"));
   EXPECT_EQ(config.robot.track_width, 0.4);
   EXPECT_EQ(config.limits.speed, 0.2);
+}
+
+/// kGood with `line` in place of its line of that key, or below [robot] where it has none.
+std::string with(const std::string& line) {
+  std::string text = kGood;
+  const std::string key = line.substr(0, line.find(' ') + 1);
+  const std::size_t at = text.find("\n" + key) + 1;
+  if (at == 0) return text.replace(text.find("[robot]\n"), 8, "[robot]\n" + line + "\n");
+  return text.replace(at, text.find('\n', at) - at, line);
+}
+
+// The obstacle stop looks for obstacles where the pose puts what the lidar sees.
+TEST(ConfigFile, with_a_pose_or_a_length_in_another_unit_is_refused_with_what_to_write) {
+  const auto says = [](const std::string& line, const std::string& words) {
+    const auto config = parse_config(with(line), "test.toml");
+    ASSERT_FALSE(config.ok()) << line;
+    EXPECT_NE(config.error().text().find(words), std::string::npos) << config.error().text();
+  };
+  says("pose = [100.0, 0.0, 0.0]", "\"lidar.pose\"");
+  says("pose = [100.0, 0.0, 0.0]", "x is from -5 to 5 m; 100 looks like mm: write 0.1");
+  says("pose = [0.1, -120, 0.0]", "y is from -5 to 5 m; -120 looks like mm: write -0.12");
+  says("pose = [0.1, 0.0, 180.0]",
+       "yaw is from -6.283185307 to 6.283185307 rad; 180 looks like degrees: write 3.14159");
+  says("pose = [0.1, 0.0, 1000.0]", "rad");
+  says("front = 300", "\"robot.front\"");
+  says("front = 300", "from 0.01 to 5 m; 300 looks like mm: write 0.3");
+  says("back = 250", "250 looks like mm: write 0.25");
+  says("width = 500", "500 looks like mm: write 0.5");
+  says("left_wheel_diameter = 150", "150 looks like mm: write 0.15");
+  EXPECT_TRUE(parse_config(with("pose = [-5, 5, -6.28]"), "test.toml").ok());
 }
 
 TEST(ConfigFile, gives_a_second_before_a_motion_whatever_it_says) {

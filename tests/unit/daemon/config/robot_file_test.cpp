@@ -101,6 +101,8 @@ TEST(RobotFile, of_another_format_says_how_the_line_is_written_here) {
   says("track_width = 0.4\nwheel_diameter = 0,15\n", "write a decimal point: wheel_diameter = 0.15");
   says("track_width = 0.4 m\n", "correct the TOML syntax");
   says("wheel_diameter = 150\n", "150 looks like mm: write 0.15");
+  says("lidar_pose = [100, 0, 0]\n", "100 looks like mm: write 0.1");
+  says("lidar_pose = [0.1, 0, 90]\n", "90 looks like degrees: write 1.5708");
   EXPECT_EQ(error_of("wheel_diameter = 150000\n").find("looks like"), std::string::npos);
 }
 
