@@ -12,12 +12,18 @@ namespace {
 
 using nlohmann::json;
 
-// Not synced: it serves after the end of a process, not of the power. A part of it is never read.
+// Not synced: it serves after the end of a process, not of the power. A part of it is never read: where the
+// disk is full or read-only, the old record stays.
 void replace(const std::filesystem::path& file, const std::string& text) {
   const std::filesystem::path fresh = file.string() + ".new";
-  std::ofstream(fresh, std::ios::trunc) << text;
-  std::error_code ignored;  // on a disk that is read-only, nothing is kept
-  std::filesystem::rename(fresh, file, ignored);
+  std::ofstream out(fresh, std::ios::trunc);
+  out << text;
+  out.close();
+  std::error_code ignored;  // nothing is kept, and nobody waits for it
+  if (out)
+    std::filesystem::rename(fresh, file, ignored);
+  else
+    std::filesystem::remove(fresh, ignored);
 }
 
 /// The content of a file; a member that it lacks is as if nothing had happened.

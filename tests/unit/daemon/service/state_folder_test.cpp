@@ -5,6 +5,7 @@
 #include <fstream>
 
 #include "daemon/service/parts/last_run.hpp"
+#include "proto/file_bytes.hpp"
 #include "tests/temporary_folder.hpp"
 #include "tests/value_of.hpp"
 
@@ -66,6 +67,23 @@ TEST_F(StateFolderTest, LastRun_knows_that_a_motion_had_ended_before) {
   const LastRun next(path_ / "last_run.json", foreground());
   EXPECT_TRUE(next.after_crash());
   EXPECT_EQ(next.last_stop().find("straight"), std::string::npos) << next.last_stop();
+}
+
+TEST_F(StateFolderTest, LastRun_keeps_the_old_record_whole_where_the_disk_is_full) {
+  const fs::path file = path_ / "last_run.json";
+  {
+    LastRun run(file, foreground());
+    run.stopped("a wall");
+    run.daemon_ends();
+    fs::create_symlink("/dev/full", file.string() + ".new");
+    run.stopped("a door");
+  }
+  ASSERT_TRUE(fs::is_regular_file(fs::symlink_status(file)));
+  const LastRun next(file, foreground());
+  EXPECT_FALSE(next.damage());
+  EXPECT_EQ(next.last_stop(), "a wall");
+  { LastRun(file, foreground()).stopped("a door"); }
+  EXPECT_NE(read_file_bytes(file).value().find("a door"), std::string::npos) << "the disk has space again";
 }
 
 TEST_F(StateFolderTest, LastRun_knows_whether_the_robot_has_ever_moved) {
