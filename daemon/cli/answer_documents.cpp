@@ -108,8 +108,9 @@ Document describe_status(const ordered_json& status) {
     for (auto& row : motion_rows(status["recorded_motion"])) rows.push_back(std::move(row));
   for (const auto* device : {&controller, &lidar})
     if ((*device)["problem"] != "") section.lines.push_back(status_text((*device)["problem"]));
-  if (status.value("replaced_controller", "") != "")
-    section.lines.push_back(status.value("replaced_controller", "") + ": odomcalibctl check");
+  for (const char* warning : {"replaced_controller", "calibration_not_held"})
+    if (status.value(warning, "") != "")
+      section.lines.push_back(status.value(warning, "") + ": odomcalibctl check");
   document.sections.push_back(section);
   return document;
 }

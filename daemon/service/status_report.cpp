@@ -169,6 +169,47 @@ std::optional<ordered_json> replaced_check(const Drive& drive, const WriteBack& 
                    "the last verified values: odomcalibctl rollback --to " + former->id + " --replaced");
 }
 
+/// A length in the controller; null: the host alone has it.
+const drivers::StoredParameter* held_in(const Drive& drive, BaseQuantity length) {
+  const auto found = std::find_if(drive.in_force.begin(), drive.in_force.end(),
+                                  [&](const auto& p) { return is_name_of(p.quantity, length); });
+  return found == drive.in_force.end() ? nullptr : &*found;
+}
+
+/// Rounding leaves less than a step of the controller (round_together).
+bool is_rounding(double remainder, double step) { return std::abs(remainder) <= step; }
+
+bool is_writable(const Drive& drive, BaseQuantity length) {
+  const auto all = drive.controller().capabilities();
+  return std::any_of(all.begin(), all.end(),
+                     [&](const auto& one) { return is_name_of(one.quantity, length) && one.writable; });
+}
+
+/// Lengths of the calibration in force that the controller could hold and does not. Empty: there is none, or
+/// a write-back is about to change that.
+std::string unheld_text(const RobotParts& parts) {
+  const auto& calibration = parts.applied.get();
+  if (!calibration || parts.write_back.busy() || parts.write_back.proving()) return "";
+  std::string text;
+  for (const BaseQuantity length : kDriveLengths) {
+    const auto calibrated = calibration->parameter(length);
+    const auto* held = held_in(parts.drive, length);
+    if (!calibrated || held == nullptr || is_rounding(*calibrated - held->value, held->step)) continue;
+    if (!is_writable(parts.drive, length)) continue;
+    text += text.empty() ? "the controller does not hold the calibration in force: " : "; ";
+    text += fmt::format("{} = {:.6g} m, not {:.6g} m", name_of(length), held->value, *calibrated);
+  }
+  return text;
+}
+
+/// No failure: the host makes corrected odometry from the calibration all the same.
+std::optional<ordered_json> unheld_check(const RobotParts& parts) {
+  const std::string found = unheld_text(parts);
+  if (found.empty()) return std::nullopt;
+  return check_row("calibration", "warn", found,
+                   "write it again: odomcalibctl apply FILE; or take it back: odomcalibctl rollback");
+}
+
 ordered_json robot_report(const Drive& drive) {
   const RobotDescription all = drive.robot();
   ordered_json body;
@@ -251,6 +292,7 @@ ordered_json status_report(const RobotParts& parts, const Task* task) {
   body["odometry"] = {pose.x, pose.y, routines::wrapped(pose.yaw)};
   body["calibrated"] = parts.applied.get().has_value();
   const auto proven = parts.write_back.proven();
+  body["calibration_not_held"] = unheld_text(parts);
   body["proven"] = proven ? ordered_json(*proven) : ordered_json(nullptr);
   body["replaced_controller"] = replaced_text(parts.drive, parts.write_back);
   body["operator_needed"] = parts.write_back.operator_needed;
@@ -321,6 +363,7 @@ ordered_json check_report(const RobotParts& parts) {
             write_back.operator_needed ? write_back.problem : "nothing unfinished",
             "odomcalibctl rollback, or apply a calibration; or connect the controller and restart"));
   if (auto replaced = replaced_check(drive, write_back)) list.push_back(*replaced);
+  if (auto unheld = unheld_check(parts)) list.push_back(*unheld);
   list.push_back(check_disk(parts.config.state_dir, parts.folder));
   if (!parts.urgency.found.empty()) list.push_back(scheduling_check(parts.urgency));
   if (auto configuration = config_check(parts.config)) list.push_back(*configuration);
@@ -328,26 +371,30 @@ ordered_json check_report(const RobotParts& parts) {
 }
 
 ordered_json parameter_report(const Drive& drive, const Calibrator& calibrator,
-                              const std::optional<Calibration>& calibration) {
-  const auto& in_force = drive.in_force;
+                              const std::optional<Calibration>& calibration, const ParameterMap& to_be) {
   const RobotDescription all = drive.robot();
   ordered_json list = ordered_json::array();
   for (const BaseQuantity length : kDriveLengths) {
     const double value = all.*member_of(length);
-    const bool stored = std::any_of(in_force.begin(), in_force.end(),
-                                    [&](const auto& p) { return is_name_of(p.quantity, length); });
+    const auto* held = held_in(drive, length);
     ordered_json entry = {{"name", name_of(length)},
                           {"unit", row_of(length).unit},
                           {"value", nullptr},
                           {"calibrated", nullptr}};
     if (value > 0.0) entry["value"] = value;
-    const auto calibrated = calibration ? calibration->parameter(length) : std::nullopt;
-    if (calibrated) entry["calibrated"] = *calibrated;
-    // The remainder of rounding in the controller is applied in the corrected odometry.
-    if (calibrated) entry["remainder"] = *calibrated - value;
-    entry["stored_in"] = stored ? "controller" : "host";
-    entry["applied_in"] =
-        stored ? "controller, rounding remainder in corrected odometry" : "corrected odometry on the host";
+    const char* place = held != nullptr ? "controller, rounding remainder in corrected odometry"
+                                        : "corrected odometry on the host";
+    if (const auto calibrated = calibration ? calibration->parameter(length) : std::nullopt) {
+      entry["calibrated"] = *calibrated;
+      const auto written = to_be.find(name_of(length));
+      const double remainder = *calibrated - (written == to_be.end() ? value : written->second);
+      if (held != nullptr && !is_rounding(remainder, held->step))
+        place = "corrected odometry on the host; the controller holds another value";
+      else
+        entry["remainder"] = remainder;
+    }
+    entry["stored_in"] = held != nullptr ? "controller" : "host";
+    entry["applied_in"] = place;
     list.push_back(entry);
   }
   if (calibration && calibrator.host_values) add_host_values(calibrator.host_values(*calibration), list);

@@ -21,7 +21,8 @@ ordered_json check_row(const std::string& name, const std::string& outcome, cons
 /// Rows of what is possible.
 ordered_json check_report(const RobotParts& parts);
 /// @param calibration whose values are shown beside those in force
+/// @param to_be m, what the controller is about to hold, by quantity; those that are not there stay
 ordered_json parameter_report(const Drive& drive, const Calibrator& calibrator,
-                              const std::optional<Calibration>& calibration);
+                              const std::optional<Calibration>& calibration, const ParameterMap& to_be = {});
 
 }  // namespace odomcalib

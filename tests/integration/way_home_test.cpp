@@ -311,6 +311,41 @@ TEST_F(WayHome, a_rollback_brings_the_calibration_back_that_was_in_force_with_th
   EXPECT_EQ(status()["calibrated"], true);
 }
 
+TEST_F(WayHome, a_controller_that_does_not_hold_the_calibration_in_force_is_told) {
+  const auto place_of_track = [](const json& parameters) {
+    return parameters[2]["applied_in"].get<std::string>();
+  };
+  const auto now = [&] { return json::parse(call("GetParameters").parameters)["parameters"]; };
+  const auto expect_told = [&](const std::string& held) {
+    EXPECT_EQ(
+        status()["calibration_not_held"],
+        "the controller does not hold the calibration in force: track_width = " + held + " m, not 0.4033 m");
+    EXPECT_NE(call("Check").parameters.find(R"("name":"calibration","outcome":"warn")"), std::string::npos);
+    EXPECT_EQ(place_of_track(now()), "corrected odometry on the host; the controller holds another value");
+    EXPECT_FALSE(now()[2].contains("remainder"));
+    EXPECT_NE(now()[0]["applied_in"].get<std::string>().find("rounding remainder"), std::string::npos);
+  };
+  const auto expect_held = [&] {
+    EXPECT_EQ(status()["calibration_not_held"], "");
+    EXPECT_EQ(call("Check").parameters.find(R"("name":"calibration")"), std::string::npos);
+    EXPECT_EQ(place_of_track(now()), "controller, rounding remainder in corrected odometry");
+    EXPECT_NEAR(now()[2]["remainder"].get<double>(), 0.0, 1e-6);
+  };
+  ASSERT_EQ(apply(calibration()).error, "");
+  expect_held();
+  ASSERT_EQ(set_track(0.41).error, "");
+  expect_told("0.41");
+  const auto dry = apply(calibration(), {{"of_this_robot", true}, {"dry_run", true}});
+  EXPECT_EQ(place_of_track(json::parse(dry.parameters)["result"]["parameters"]),
+            "controller, rounding remainder in corrected odometry")
+      << "what it would be";
+  ASSERT_EQ(apply(calibration()).error, "");
+  expect_held();
+  robot_->node().dictionary().set({0x2100, 3}, 400000);  // another memory than before, while nobody looked
+  restart();
+  expect_told("0.4");
+}
+
 // --- A controller in the place of another ----------------------------------------------------------------
 
 TEST_F(WayHome, a_replaced_controller_is_told_and_offered_what_was_verified_last) {

@@ -42,12 +42,13 @@ ordered_json dry_run_report(const RobotParts& parts, const ParameterMap& present
   std::optional<Calibration> wanted;
   if (wish.calibration)
     if (auto read = calibration_from_json(*wish.calibration, "calibration")) wanted = std::move(read).value();
-  ordered_json report = {{"outcome", "dry_run"},
-                         {"before", present},
-                         {"after", rounded.values},
-                         {"rounding_error", to_json(rounded.remaining)},
-                         {"parameters", parameter_report(parts.drive, parts.calibrator, wanted)},
-                         {"asks", wish.asks}};
+  ordered_json report = {
+      {"outcome", "dry_run"},
+      {"before", present},
+      {"after", rounded.values},
+      {"rounding_error", to_json(rounded.remaining)},
+      {"parameters", parameter_report(parts.drive, parts.calibrator, wanted, rounded.values)},
+      {"asks", wish.asks}};
   if (!wish.place.empty()) report["goes_to"] = wish.place;
   return report;
 }

@@ -481,6 +481,15 @@ TEST(Status, has_no_row_of_what_there_is_nothing_to_say_of) {
     EXPECT_THAT(text, HasSubstr(row));
 }
 
+TEST(Status, says_that_the_controller_does_not_hold_the_calibration) {
+  const auto status = nlohmann::ordered_json::parse(R"({"state":"idle","robot":{"robot_id":""},
+    "controller":{"state":"enabled","device":"can0","problem":"","supply_voltage":null},
+    "lidar":{"stale":"","device":"/dev/ttyUSB0","problem":""},"calibrated":true,"replaced_controller":"",
+    "calibration_not_held":"track_width = 0.4 m, not 0.41 m","last_stop":"","recording_bytes":0})");
+  EXPECT_THAT(to_text(describe_status(status)),
+              HasSubstr("track_width = 0.4 m, not 0.41 m: odomcalibctl check"));
+}
+
 TEST(WriteBack, a_dry_run_says_what_would_be_written_in_place_of_what) {
   const auto result = nlohmann::ordered_json::parse(R"({"outcome":"dry_run",
     "before":{"left_wheel_diameter":0.15,"right_wheel_diameter":0.15,"track_width":0.4},
