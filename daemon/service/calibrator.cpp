@@ -12,6 +12,7 @@
 #include "calib/terms/request.hpp"
 #include "daemon/service/dead_reckoning.hpp"
 #include "daemon/service/settings.hpp"
+#include "odomcalib_version.hpp"
 
 namespace odomcalib {
 namespace {
@@ -52,7 +53,11 @@ Result<Calibration> read_and_solve(const std::vector<std::filesystem::path>& pat
     if (!recording) return recording.error();
     recordings.push_back(std::move(recording).value());
   }
-  return calib::solve(recordings, {.effects = effects}, progress);
+  Calibration calibration = calib::solve(recordings, {.effects = effects}, progress);
+  SolveSettings& settings = calibration.settings.emplace();
+  settings.version = kVersion;
+  settings.effects = effects;
+  return calibration;
 }
 
 std::string applied_in(calib::odometry::Place place) {

@@ -55,6 +55,9 @@ TEST_F(SolverOnItsOwn, gives_the_very_calibration_that_the_same_solver_gives_her
   const auto here = make_calibrator().solve({recording_}, {"none"}, {});
   ASSERT_TRUE(here.ok());
   EXPECT_EQ(to_json(there.value()), to_json(here.value()));
+  ASSERT_TRUE(there.value().settings) << "a reader of the file has to know them to repeat the run";
+  EXPECT_FALSE(there.value().settings->version.empty());
+  EXPECT_EQ(there.value().settings->effects, std::vector<std::string>{"none"});
   EXPECT_GT(std::set<std::string>(phases.begin(), phases.end()).size(), 1U) << "it tells how far it is";
 }
 
