@@ -11,6 +11,7 @@
 #include <cerrno>
 #include <chrono>
 #include <cstring>
+#include <fstream>
 #include <nlohmann/json.hpp>
 #include <utility>
 
@@ -28,6 +29,15 @@ void on_signal(int /*number*/) { signalled = 1; }
 
 Error not_running(const std::string& socket, const std::string& what) {
   return {ErrorCode::not_running, what, socket, "start it with: systemctl start odomcalib"};
+}
+
+/// Somebody listens there although the file of that name is gone: the kernel keeps the name that the socket
+/// was given (unix(7), /proc/net/unix).
+bool listens_without_file(const std::string& socket) {
+  std::ifstream sockets("/proc/net/unix");
+  for (std::string line; std::getline(sockets, line);)
+    if (line.ends_with(' ' + socket)) return true;
+  return false;
 }
 
 // A busy machine must not delay the renewals. Without the right to this the robot may stop early, no more.
@@ -108,6 +118,9 @@ Result<Client> Client::connect(const std::string& path) {
   if (errno == EACCES || errno == EPERM)
     return Error{ErrorCode::not_permitted, "you may not use the control socket", path,
                  "join group odomcalib"};
+  if (errno == ENOENT && listens_without_file(path))
+    return Error{ErrorCode::not_running, "odomcalibd runs, but somebody removed its control socket", path,
+                 "restart it with: systemctl restart odomcalib"};
   return not_running(path, "odomcalibd is not running");
 }
 
