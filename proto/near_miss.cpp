@@ -1,6 +1,7 @@
 #include "proto/near_miss.hpp"
 
 #include <algorithm>
+#include <utility>
 #include <vector>
 
 namespace odomcalib {
@@ -38,13 +39,15 @@ std::size_t distance(const std::string& a, const std::string& b) {
 std::optional<std::string> near_miss(const std::string& word, const std::set<std::string>& known) {
   if (word.empty() || word.size() > kLongestWord) return std::nullopt;
   std::optional<std::string> nearest;
-  std::size_t least = word.size() / kLettersPerError + 1;
+  // Errors, and letters that tell apart those that have as many.
+  std::pair<std::size_t, std::size_t> least{word.size() / kLettersPerError + 1, 0};
   for (const std::string& candidate : known) {
     const bool elsewhere = last_part(candidate) == last_part(word);
     const bool begins = word.size() >= kShortestBegin && candidate.starts_with(word + "_");
-    const std::size_t errors = elsewhere ? 0 : begins ? 1 : distance(word, candidate);
-    if (errors >= least) continue;
-    least = errors;
+    const std::size_t letters = distance(word, candidate);
+    const std::pair rank{elsewhere ? 0 : begins ? 1 : letters, letters};
+    if (rank >= least) continue;
+    least = rank;
     nearest = candidate;
   }
   return nearest;

@@ -127,6 +127,8 @@ TEST(NearMiss, is_at_most_a_third_of_the_letters_away) {
   const std::set<std::string> known = {"lidar.pose", "robot.track_width", "track_width"};
   EXPECT_EQ(near_miss("trackwidth", known), "track_width");
   EXPECT_EQ(near_miss("pose", known), "lidar.pose");
+  EXPECT_EQ(near_miss("lidr.device", {"controller.device", "lidar.device"}), "lidar.device");
+  EXPECT_EQ(near_miss("contrller.device", {"controller.device", "lidar.device"}), "controller.device");
   EXPECT_EQ(near_miss("tracks", known), std::nullopt);
   EXPECT_EQ(near_miss("track", known), "track_width");
   EXPECT_EQ(near_miss("", known), std::nullopt);
