@@ -67,6 +67,7 @@ struct Publisher::Sender {
     if (!to_open.exchange(false, std::memory_order_acq_rel)) return;
     outlet = open(url);
     opened.store(outlet != nullptr, std::memory_order_release);
+    refused.store(outlet == nullptr, std::memory_order_release);
   }
   void drain() {
     while (!abandoned.load(std::memory_order_acquire)) {
@@ -96,7 +97,7 @@ struct Publisher::Sender {
   boost::lockfree::queue<Message*, boost::lockfree::capacity<service::settings::kMostUnsent>> queue;  // owns
   std::atomic<std::size_t> waiting = 0;                                                               // bytes
   std::atomic<std::uint32_t> calls = 0;  // changes when there is something to look at
-  std::atomic<bool> to_open = true, opened = false, ended = false, abandoned = false;
+  std::atomic<bool> to_open = true, opened = false, refused = false, ended = false, abandoned = false;
   std::atomic<std::uint64_t> sent = 0, failed = 0;
   std::binary_semaphore done{0};
 };
@@ -142,6 +143,10 @@ void Publisher::send(const std::string& channel, const std::string& message) {
   // A place that the thread is just giving back may not be free yet: then it is this message that goes.
   if (!sender_->put(kept) && (!drop_oldest() || !sender_->put(kept))) ++dropped_;
   sender_->wake();
+}
+
+std::string Publisher::refused() const {
+  return sender_ && sender_->refused.load(std::memory_order_acquire) ? sender_->url : "";
 }
 
 Publisher::Counters Publisher::counters() const {

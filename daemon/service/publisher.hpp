@@ -46,6 +46,8 @@ class Publisher {
 
   /// Opens what could not be opened before: at start the network may not be there yet.
   void serve(double now);
+  /// The URL that the last attempt could not open; empty: it could, or there was none.
+  [[nodiscard]] std::string refused() const;
   /// Never waits. @param channel without prefix
   void send(const std::string& channel, const std::string& message);
   [[nodiscard]] Counters counters() const;

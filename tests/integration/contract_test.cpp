@@ -180,5 +180,21 @@ TEST_F(ReadOnlyState, F35_the_service_runs_says_so_and_neither_moves_nor_writes)
   EXPECT_EQ(status()["state"], "idle");
 }
 
+class WithWrongLcmUrl : public Contract {
+  void adjust(Config& config) override {
+    config.lcm_enabled = true;
+    config.lcm_url = "udpm://1.2.3.4:7667";  // no multicast address
+  }
+};
+
+TEST_F(WithWrongLcmUrl, the_journal_names_the_key_once) {
+  EXPECT_TRUE(
+      run_until([this] { return logged("lcm", R"(lcm.url = "udpm://1.2.3.4:7667")") != nullptr; }, 60.0));
+  run(10.0);
+  EXPECT_EQ(std::count_if(lines_.begin(), lines_.end(), [](const Line& line) { return line.code == "lcm"; }),
+            1)
+      << all_lines();
+}
+
 }  // namespace
 }  // namespace odomcalib::contract_test

@@ -85,6 +85,13 @@ void Outbox::send_robot(const RobotDescription& robot) {
 void Outbox::send_status(const ordered_json& status) {
   next_status_ = now_ + service::settings::kStatusPeriod_s;
   telemetry.publisher.serve(now_);
+  // LCM itself writes the cause to standard error, without the key.
+  if (const auto url = telemetry.publisher.refused(); !url.empty() && !std::exchange(lcm_told_, true))
+    event(messages::Severity::warning, "lcm",
+          fmt::format(
+              "lcm.url = \"{}\" cannot be opened: no telemetry leaves; correct it, see that multicast has "
+              "a route, or set lcm.enabled = false; it is tried again every {:.0f} s",
+              url, service::settings::kPublisherRetry_s));
   telemetry.publisher.send("STATUS",
                            messages::encode_json(clock_.wall_us(), "odomcalib-status/1", json_text(status)));
 }

@@ -77,6 +77,7 @@ class Outbox {
   std::set<ClientId> monitors_;
   ordered_json last_progress_;
   double last_progress_at_ = 0.0;
+  bool lcm_told_ = false;  // that it cannot be opened
   double next_robot_ = 0.0, next_status_ = 0.0, next_progress_ = 0.0;
 };
 

@@ -144,6 +144,7 @@ TEST(Publisher, that_could_not_be_opened_is_opened_later) {
     return std::make_unique<OutletTo>(network);
   });
   const auto told = [&publisher] { return publisher.counters().failed + publisher.counters().sent; };
+  EXPECT_TRUE(comes_true([&publisher] { return publisher.refused() == "udpm://"; }));
   std::uint64_t given = 0;
   for (double now = 100.0; now < 120.0; now += 1.0) {
     publisher.serve(now);
@@ -152,6 +153,7 @@ TEST(Publisher, that_could_not_be_opened_is_opened_later) {
     ASSERT_TRUE(comes_true([&] { return told() == given; }));
   }
   EXPECT_EQ(tries, 3);
+  EXPECT_EQ(publisher.refused(), "");
   EXPECT_EQ(publisher.counters().failed, 10U);
   EXPECT_EQ(publisher.counters().sent, 10U);
 }
