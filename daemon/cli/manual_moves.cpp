@@ -13,6 +13,7 @@
 #include "daemon/cli/display.hpp"
 #include "daemon/cli/settings.hpp"
 #include "proto/base_quantities.hpp"
+#include "proto/calibration/utc.hpp"
 
 namespace odomcalib::cli {
 namespace {
@@ -44,11 +45,28 @@ double length(const ordered_json& robot, const char* name) {
                                                                               : 0.0;
 }
 
+std::string text_member(const ordered_json& body, const char* name) {
+  return body.is_object() && body.contains(name) && body[name].is_string() ? body[name].get<std::string>()
+                                                                           : "";
+}
+
 RobotDescription robot_of(const ordered_json& robot) {
   RobotDescription description;
   for (const BaseQuantity one : kDriveLengths) description.*member_of(one) = length(robot, name_of(one));
   description.ticks_per_rev = length(robot, "ticks_per_rev");
+  description.lidar_pose = numbers<3>(robot, "lidar_pose");
+  description.robot_id = text_member(robot, "robot_id");
+  description.controller = text_member(robot, "controller");
+  description.controller_id = text_member(robot, "controller_id");
   return description;
+}
+
+/// Time of the drive; nullopt: the daemon's clock told no date.
+std::optional<Driven> driven_in(const ordered_json& result) {
+  const ordered_json times = result.value("driven", ordered_json());
+  const auto begin = utc_from(text_member(times, "begin")), end = utc_from(text_member(times, "end"));
+  if (!begin || !end) return std::nullopt;
+  return Driven{*begin, *end};
 }
 
 calib::wheels::BaseParameters base_of(const RobotDescription& robot) {
@@ -182,6 +200,9 @@ Result<void> DrivenMoves::add(const ordered_json& result) {
     for (const auto& round : result["rounds"]) rounds.push_back(round);
   if (result.contains("recording") && result["recording"].is_string())
     recordings.push_back(result["recording"]);
+  if (const auto times = driven_in(result))
+    driven = Driven{driven ? std::min(driven->begin, times->begin) : times->begin,
+                    driven ? std::max(driven->end, times->end) : times->end};
   return {};
 }
 
@@ -323,6 +344,7 @@ Calibration calibration_of(const Proposal& proposal, const DrivenMoves& driven) 
   Calibration calibration;
   const ProposalEntry& entry = proposal.entry;
   calibration.robot = proposal.robot;
+  calibration.driven = driven.driven;
   for (const auto& [name, q] : entry.parameters)
     calibration.parameters.emplace_back(name, Quantity{q.value, q.std, q.unit});
   calibration.verdict = Verdict::accepted_with_warnings;
@@ -335,6 +357,8 @@ Calibration calibration_of(const Proposal& proposal, const DrivenMoves& driven) 
     use.name = recording.substr(recording.find_last_of('/') + 1);
     calibration.data.push_back(use);
   }
+  calibration.next_step =
+      "odomcalibctl apply writes these lengths; odomcalibctl calibrate looks for the other errors";
   calibration.proposal = entry;
   return calibration;
 }

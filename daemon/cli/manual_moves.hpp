@@ -3,6 +3,7 @@
 #pragma once
 
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -11,12 +12,13 @@
 
 namespace odomcalib::cli {
 
-/// Answers of one or more motions: "moves", "robot", "rounds", "recording".
+/// Answers of one or more motions: "moves", "robot", "rounds", "recording", "driven".
 struct DrivenMoves {
   nlohmann::ordered_json moves = nlohmann::ordered_json::array();
   nlohmann::ordered_json rounds = nlohmann::ordered_json::array();
   nlohmann::ordered_json robot = nlohmann::ordered_json::object();
   std::vector<std::string> recordings;
+  std::optional<Driven> driven;
   /// Error: format, when `result` is no answer of a motion, or of another robot than those before.
   Result<void> add(const nlohmann::ordered_json& result);
 };

@@ -17,6 +17,7 @@
 #include "daemon/cli/verbs.hpp"
 #include "daemon/routines/settings.hpp"
 #include "proto/angles.hpp"
+#include "proto/calibration/utc.hpp"
 #include "proto/file_bytes.hpp"
 #include "proto/number_text.hpp"
 
@@ -174,6 +175,8 @@ void print_outcome(const Session& session, const Outcome& outcome) {
     body["proposal"] = proposal ? to_json(proposal->entry) : ordered_json(nullptr);
     if (!driven.recordings.empty()) body["recording"] = driven.recordings.back();
     body["recordings"] = driven.recordings;
+    if (driven.driven)
+      body["driven"] = {{"begin", utc_text(driven.driven->begin)}, {"end", utc_text(driven.driven->end)}};
     return print_document("moves", body, session.json);
   }
   for (const auto& one : driven.moves) print_line(describe_move(one));

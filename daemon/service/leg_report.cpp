@@ -7,16 +7,22 @@
 
 #include "daemon/service/dead_reckoning.hpp"
 #include "proto/base_quantities.hpp"
+#include "proto/calibration/utc.hpp"
 
 namespace odomcalib {
 namespace {
 
 ordered_json json_of(const routines::Pose& pose) { return {pose.x, pose.y, pose.yaw}; }
 
-ordered_json lengths(const RobotDescription& robot) {
+/// Members without those that nobody knows.
+ordered_json description(const RobotDescription& robot) {
   ordered_json body;
   for (const BaseQuantity length : kDriveLengths) body[name_of(length)] = robot.*member_of(length);
   body["ticks_per_rev"] = robot.ticks_per_rev;
+  if (robot.lidar_pose) body["lidar_pose"] = *robot.lidar_pose;
+  if (!robot.robot_id.empty()) body["robot_id"] = robot.robot_id;
+  if (!robot.controller.empty()) body["controller"] = robot.controller;
+  if (!robot.controller_id.empty()) body["controller_id"] = robot.controller_id;
   return body;
 }
 
@@ -77,8 +83,11 @@ void MovesReport::add(const Comparison& comparison, ordered_json& body) {
                    {"yaw", driven.yaw - seen.yaw}};
 }
 
-ordered_json MovesReport::body(const RobotDescription& robot) const {
-  ordered_json body = {{"moves", ordered_json::array()}, {"robot", lengths(robot)}};
+ordered_json MovesReport::body(const RobotDescription& robot, double since_1970) const {
+  ordered_json body = {{"moves", ordered_json::array()}, {"robot", description(robot)}};
+  if (!legs_.empty() && is_date(since_1970 + legs_.front().begin))
+    body["driven"] = {{"begin", utc_text(since_1970 + legs_.front().begin)},
+                      {"end", utc_text(since_1970 + legs_.back().end)}};
   for (std::size_t k = 0; k < legs_.size(); ++k) {
     const Leg& leg = legs_[k];
     ordered_json move = {{"move", leg.move.name}, {"begin", leg.begin}, {"end", leg.end}};

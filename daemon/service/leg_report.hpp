@@ -31,10 +31,12 @@ class MovesReport {
 
   /// Compares one more pair of scans. @return false where all have been
   bool compare_next(const std::array<double, 3>& lidar_pose);
-  /// {"moves": [...], "robot": {...}} and with rounds "rounds": wheels, odometry and lidar, and the values
-  /// that odometry goes by.
+  /// {"moves": [...], "robot": {...}, "driven": {...}} and with rounds "rounds": wheels, odometry and lidar,
+  /// the values that odometry goes by and whose they are, and when the moves were driven.
   /// @param robot with these values
-  [[nodiscard]] ordered_json body(const RobotDescription& robot) const;
+  /// @param since_1970 s, what the date is ahead of the times of the legs; "driven" is left out where it
+  /// tells no date
+  [[nodiscard]] ordered_json body(const RobotDescription& robot, double since_1970) const;
 
  private:
   /// Base motion between two moments at rest, in the frame of the first.

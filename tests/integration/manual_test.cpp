@@ -166,5 +166,37 @@ TEST_P(Squares, S1_07_driven_both_ways_give_E_d_and_E_b_within_three_deviations)
 }
 INSTANTIATE_TEST_SUITE_P(Robots, Squares, testing::Range<std::uint64_t>(1, 21));
 
+class NamedRobot : public Manual {
+ protected:
+  void adjust(Config& config) override { config.robot.robot_id = "robot-A"; }
+  control::Reply apply(const Calibration& calibration) {
+    TestClient caller(folder_ / "control");
+    caller.call("Apply", {{"lease", lease_}, {"calibration", json::parse(to_json(calibration))}});
+    return wait_reply(caller, 60.0);
+  }
+};
+
+TEST_F(NamedRobot, takes_the_lengths_that_it_was_driven_for_and_not_those_of_another_controller) {
+  acquire();
+  cli::DrivenMoves driven;
+  drive(driven, "Straight", {{"distance", 1.0}});
+  const auto proposal = cli::straight_proposal(driven, {});
+  ASSERT_TRUE(proposal) << proposal.error().text();
+  Calibration lengths = cli::calibration_of(proposal.value(), driven);
+  EXPECT_EQ(lengths.robot.robot_id, "robot-A");
+  EXPECT_EQ(lengths.robot.controller_id, "0xfee/0xd15/4242");
+  EXPECT_TRUE(lengths.robot.lidar_pose);
+  EXPECT_FALSE(lengths.robot.controller.empty());
+  ASSERT_TRUE(lengths.driven);
+  EXPECT_GT(lengths.driven->begin, 1.7e9 + 100.0) << "the clock's time when the service began";
+  EXPECT_GT(lengths.driven->end, lengths.driven->begin);
+  EXPECT_NE(lengths.next_step.find("odomcalibctl apply"), std::string::npos) << lengths.next_step;
+  Calibration other = lengths;
+  other.robot.controller_id = "0xfee/0xd15/1";
+  EXPECT_NE(apply(other).parameters.find("was made with the controller"), std::string::npos);
+  const auto reply = apply(lengths);
+  EXPECT_TRUE(reply.error.empty()) << reply.parameters;
+}
+
 }  // namespace
 }  // namespace odomcalib::manual_test

@@ -171,7 +171,8 @@ void MotionTask::begin_report() {
 TaskTurn MotionTask::reported() {
   if (moves_) {
     if (moves_->compare_next(lidar_pose(parts_.applied.get(), parts_.config))) return Running{};
-    report_ = moves_->body(parts_.drive.robot());
+    const double since_1970 = 1e-6 * static_cast<double>(parts_.clock.wall_us()) - parts_.clock.now();
+    report_ = moves_->body(parts_.drive.described(), since_1970);
     parts_.write_back.proof.driven(report_);
     moves_.reset();
   }
