@@ -6,12 +6,14 @@
 #include <array>
 #include <cmath>
 #include <optional>
-#include <span>
+#include <utility>
 
 #include "calib/classical/rest_to_rest.hpp"
 #include "calib/classical/settings.hpp"
+#include "calib/report/settings.hpp"
 #include "daemon/cli/display.hpp"
 #include "daemon/cli/settings.hpp"
+#include "proto/angles.hpp"
 #include "proto/base_quantities.hpp"
 #include "proto/calibration/utc.hpp"
 
@@ -84,7 +86,7 @@ bool goes_out(const ordered_json& move, double first) {
 
 Error wrong_count(std::size_t values, std::size_t moves) {
   return {ErrorCode::usage, fmt::format("{} values were measured and {} moves were driven", values, moves),
-          "", "give one value for all, or one for each"};
+          "", "give one value for all, or one for each; a number has a point, no comma"};
 }
 
 Error unseen() {
@@ -138,6 +140,29 @@ void remark_few(Proposal& proposal) {
                     proposal.entry.used == 1 ? "is not known" : "is hardly known"));
 }
 
+bool is_plausible(double ratio) {
+  namespace gate = calib::report::settings;
+  return ratio >= gate::kPlausibleLow && ratio <= gate::kPlausibleHigh;
+}
+
+/// The gate of a solve holds for lengths alone, too: what is no length of this robot is not proposed.
+Result<Proposal> gated(Proposal proposal) {
+  for (const auto& [name, q] : proposal.entry.parameters) {
+    if (is_plausible(q.value / q.in_force) &&
+        !(q.std > calib::report::settings::kMaxRelativeDeviation * q.value))
+      continue;
+    const bool by_tape = proposal.entry.measured_by == "tape";
+    return Error{
+        ErrorCode::refused,
+        fmt::format("{} would be {:.3f} +- {:.3f} mm, where {:.3f} mm is in force", readable(name),
+                    1e3 * q.value, 2e3 * std::max(q.std, 0.0), 1e3 * q.in_force),
+        by_tape ? "what was measured" : "scan matching",
+        by_tape ? "measure again; numbers have a point, a comma stands between two of them: 1.0132,1.0128"
+                : "check the lengths in force and the wires: odomcalibctl params get, check --nudge"};
+  }
+  return proposal;
+}
+
 Result<std::vector<StraightMove>> straights_by_tape(const DrivenMoves& driven,
                                                     const std::vector<double>& measured) {
   std::vector<StraightMove> moves;
@@ -148,6 +173,9 @@ Result<std::vector<StraightMove>> straights_by_tape(const DrivenMoves& driven,
   if (measured.size() != 1 && measured.size() != out.size()) return wrong_count(measured.size(), out.size());
   for (std::size_t k = 0; k < out.size(); ++k) {
     const auto wheels = *numbers<2>(*out[k], "wheels");
+    const auto odometry = *numbers<3>(*out[k], "odometry");
+    if (auto wrong = implausible(chosen(measured, k), std::hypot(odometry[0], odometry[1]), metres()))
+      return *wrong;
     moves.push_back({{wheels[0], wheels[1]}, chosen(measured, k), std::nullopt});
   }
   return moves;
@@ -206,6 +234,34 @@ Result<void> DrivenMoves::add(const ordered_json& result) {
   return {};
 }
 
+const Measure& metres() {
+  static const Measure measure{
+      "m", 1.0, "1.0132", {{"mm", 1e-3}, {"cm", 1e-2}, {"inches", 0.0254}, {"feet", 0.3048}}};
+  return measure;
+}
+
+const Measure& degrees() {
+  static const Measure measure{"degrees", 1.0 / kDegrees, "361.5", {{"rad", kDegrees}, {"turns", 360.0}}};
+  return measure;
+}
+
+std::optional<Error> implausible(double measured, double expected, const Measure& measure) {
+  const double ratio = measured / expected;
+  if (!(expected > 0.0) || is_plausible(ratio)) return std::nullopt;
+  const auto far = [ratio](const Measure::OtherUnit& unit) {
+    return std::abs(std::log(ratio * unit.in_this));
+  };
+  const auto meant = *std::min_element(measure.others.begin(), measure.others.end(),
+                                       [&](const auto& a, const auto& b) { return far(a) < far(b); });
+  std::string text = fmt::format("{:.6g} {} was measured of a move of {:.4g} {}", measured / measure.si,
+                                 measure.unit, expected / measure.si, measure.unit);
+  if (is_plausible(ratio * meant.in_this))
+    text += fmt::format(": in {} that is {:.6g} {}", meant.name, measured * meant.in_this / measure.si,
+                        measure.unit);
+  return Error{ErrorCode::usage, text, "what was measured",
+               fmt::format("state it in {}, for example {}", measure.unit, measure.example)};
+}
+
 Result<Proposal> straight_proposal(const DrivenMoves& driven, const std::vector<double>& measured) {
   const bool by_tape = !measured.empty();
   auto moves = by_tape ? straights_by_tape(driven, measured) : Result(straights_by_lidar(driven));
@@ -227,7 +283,7 @@ Result<Proposal> straight_proposal(const DrivenMoves& driven, const std::vector<
     proposal.entry.remarks.emplace_back(
         "a tape shows no heading: both wheels got one factor, unequal wheels stay hidden");
   remark_few(proposal);
-  return proposal;
+  return gated(std::move(proposal));
 }
 
 Result<Proposal> spin_proposal(const DrivenMoves& driven, const std::vector<double>& measured) {
@@ -238,7 +294,10 @@ Result<Proposal> spin_proposal(const DrivenMoves& driven, const std::vector<doub
   for (std::size_t k = 0; k < driven.moves.size(); ++k) {
     const auto seen = numbers<3>(driven.moves[k], "lidar");
     const auto wheels = *numbers<2>(driven.moves[k], "wheels");
-    const double way = (*numbers<3>(driven.moves[k], "odometry"))[2] > 0.0 ? 1.0 : -1.0;
+    const double turned = (*numbers<3>(driven.moves[k], "odometry"))[2];
+    const double way = turned > 0.0 ? 1.0 : -1.0;
+    if (auto wrong = by_tape ? implausible(chosen(measured, k), std::abs(turned), degrees()) : std::nullopt)
+      return *wrong;
     if (by_tape)
       turns.push_back({{wheels[0], wheels[1]}, way * chosen(measured, k)});
     else if (seen)
@@ -258,7 +317,7 @@ Result<Proposal> spin_proposal(const DrivenMoves& driven, const std::vector<doub
       fmt::format("the diameters in force are taken as right to {:.2f} %, as straight leaves them",
                   100.0 * calib::classical::settings::kDiametersOfStraight));
   remark_few(proposal);
-  return proposal;
+  return gated(std::move(proposal));
 }
 
 double side_of(const DrivenMoves& driven) {
@@ -310,7 +369,7 @@ Result<Proposal> square_proposal(const DrivenMoves& driven, double side) {
   proposal.entry.remarks.emplace_back(
       "a closed figure does not show the common scale of the wheels: straight does");
   remark_few(proposal);
-  return proposal;
+  return gated(std::move(proposal));
 }
 
 std::string next_command(const ProposalEntry& proposal) {

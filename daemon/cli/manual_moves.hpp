@@ -23,6 +23,24 @@ struct DrivenMoves {
   Result<void> add(const nlohmann::ordered_json& result);
 };
 
+/// How a person states what was measured.
+struct Measure {
+  struct OtherUnit {
+    const char* name;
+    double in_this;  ///< one of it
+  };
+  const char* unit;
+  double si;            ///< one of it in m, or in rad
+  const char* example;  ///< as it is typed
+  std::vector<OtherUnit> others;
+};
+const Measure& metres();
+const Measure& degrees();
+
+/// Refuses what cannot have been measured of this move, and names the unit that it would be right in.
+/// @param measured, expected m, or rad: by the person, and by odometry or as it was asked for
+std::optional<Error> implausible(double measured, double expected, const Measure& measure);
+
 struct Proposal {
   ProposalEntry entry;     ///< as the calibration file has it
   RobotDescription robot;  ///< values in force during the motion

@@ -7,6 +7,7 @@
 #include <functional>
 #include <iostream>
 #include <memory>
+#include <numbers>
 
 #include "daemon/cli/answer_documents.hpp"
 #include "daemon/cli/client.hpp"
@@ -48,32 +49,56 @@ bool asks(const ManualOptions& options) {
   return options.measured.size() == 1 && options.measured[0] == "ask";
 }
 
-/// @param unit of what is typed, in SI
-Result<double> number_of(const std::string& text, double unit) {
-  const auto value = number_from<double>(text);
-  if (!value || !std::isfinite(*value) || !(*value > 0.0))
-    return Error{ErrorCode::usage, "\"" + text + "\" is no number above 0", "what was measured",
-                 "for example 1.0132"};
-  return *value * unit;
+/// Whether it begins as no number does: the part behind a comma that was meant as a point.
+bool is_fraction(const std::string& text) {
+  return text.size() > 1 && text[0] == '0' && text[1] >= '0' && text[1] <= '9';
 }
 
-Result<std::vector<double>> measured_values(const ManualOptions& options, double unit) {
+/// @return in SI
+Result<double> number_of(const std::string& text, const Measure& measure) {
+  const std::string example =
+      fmt::format("state it in {}, with a point, for example {}", measure.unit, measure.example);
+  const auto value = number_from<double>(text);
+  if (!value || !std::isfinite(*value) || !(*value > 0.0))
+    return Error{ErrorCode::usage, "\"" + text + "\" is no number above 0", "what was measured", example};
+  if (is_fraction(text))
+    return Error{ErrorCode::usage, "\"" + text + "\" is no number, but what follows a decimal point",
+                 "what was measured", example};
+  return *value * measure.si;
+}
+
+/// m or rad, that a motion goes.
+double length_of(const Motion& motion) {
+  const auto distance = motion.parameters.find("distance");
+  return distance != motion.parameters.end()
+             ? std::abs(distance->get<double>())
+             : 2.0 * std::numbers::pi * std::abs(motion.parameters.value("turns", 0.0));
+}
+
+/// @param motion that goes as far as those that were measured
+Result<std::vector<double>> measured_values(const ManualOptions& options, const Measure& measure,
+                                            const Motion& motion) {
   std::vector<double> values;
   if (asks(options)) return values;
   for (const auto& text : options.measured) {
-    const auto value = number_of(text, unit);
+    const auto value = number_of(text, measure);
     if (!value) return value.error();
+    // Before anything moves. What was driven before is looked at with what odometry said of it.
+    if (auto wrong =
+            options.of.empty() ? implausible(value.value(), length_of(motion), measure) : std::nullopt)
+      return *wrong;
     values.push_back(value.value());
   }
   return values;
 }
 
-/// Number that a person reads; an answer that is no number is asked for again.
-Result<double> asked(const std::string& question, double unit) {
-  for (std::string line; std::cerr << question << std::flush, std::getline(std::cin, line);) {
-    auto value = number_of(line, unit);
-    if (value) return value;
-    std::cerr << value.error().what << '\n';
+/// Number that a person reads; an answer that is none, or not of this motion, is asked for again.
+Result<double> asked(const Motion& motion, const Measure& measure) {
+  for (std::string line; std::cerr << motion.question << std::flush, std::getline(std::cin, line);) {
+    auto value = number_of(line, measure);
+    const auto wrong = value ? implausible(value.value(), length_of(motion), measure) : value.error();
+    if (!wrong) return value;
+    std::cerr << wrong->what << '\n';
   }
   return Error{ErrorCode::cancelled, "nothing was measured", "standard input", ""};
 }
@@ -117,7 +142,7 @@ Result<ordered_json> move(const Session& session, ManualOptions& options, const 
 }
 
 Result<Outcome> drive(const Session& session, ManualOptions options, const std::vector<Motion>& motions,
-                      double unit, std::vector<double> measured, const Propose& propose) {
+                      const Measure& measure, std::vector<double> measured, const Propose& propose) {
   Outcome outcome;
   for (int round = 0; round < options.repeat && !(outcome.proposal && outcome.proposal->entry.settled);
        ++round) {
@@ -127,7 +152,7 @@ Result<Outcome> drive(const Session& session, ManualOptions options, const std::
       if (options.consent.dry_run) return Outcome{{}, std::nullopt, result.value()};
       if (auto added = outcome.driven.add(result.value()); !added) return added.error();
       if (!asks(options) || motion.question.empty()) continue;
-      const auto answer = asked(motion.question, unit);
+      const auto answer = asked(motion, measure);
       if (!answer) return answer.error();
       measured.push_back(answer.value());
     }
@@ -197,15 +222,15 @@ int finish_manual(const Session& session, const ManualOptions& options, const Re
 }
 
 /// Drives, or with --of looks again at what was driven before.
-int run(const Session& session, const ManualOptions& options, const std::vector<Motion>& motions, double unit,
-        const Propose& propose) {
+int run(const Session& session, const ManualOptions& options, const std::vector<Motion>& motions,
+        const Measure& measure, const Propose& propose) {
   if (const auto files = check_outputs({{"--out", options.out}}, {{"--of", options.of}}); !files)
     return report_error(files.error(), session.json);
-  auto measured = measured_values(options, unit);
+  auto measured = measured_values(options, measure, motions.front());
   if (!measured) return report_error(measured.error(), session.json);
   if (options.of.empty())
     return finish_manual(session, options,
-                         drive(session, options, motions, unit, std::move(measured).value(), propose));
+                         drive(session, options, motions, measure, std::move(measured).value(), propose));
   if (asks(options))
     return report_error({ErrorCode::usage, "nobody is asked about moves that were driven before", "--of",
                          "state what was measured, one value or one for each move"},
@@ -232,7 +257,7 @@ int straight(const Session& session, const ManualOptions& options) {
     const bool is_known = options.of.empty() || options.distance_is_stated;
     return square_proposal(driven, is_known ? std::abs(options.distance) : side_of(driven));
   };
-  return run(session, options, straight_motions(options), 1.0, propose);
+  return run(session, options, straight_motions(options), metres(), propose);
 }
 
 /// The track width inherits the error of the diameters.
@@ -246,7 +271,7 @@ void warn_of_order(const Session& session) {
 
 int spin(const Session& session, const ManualOptions& options) {
   if (options.of.empty()) warn_of_order(session);
-  return run(session, options, spin_motions(options), 1.0 / kDegrees, spin_proposal);
+  return run(session, options, spin_motions(options), degrees(), spin_proposal);
 }
 
 /// @return --of, which excludes what only a drive heeds

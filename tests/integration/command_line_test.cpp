@@ -205,6 +205,48 @@ TEST_F(CommandLine, moves_that_were_driven_before_have_no_options_of_a_drive) {
   EXPECT_THAT(got.err, HasSubstr("the moves were driven before"));
 }
 
+/// As --json of straight and spin prints it: two moves, of which a tape knows nothing yet.
+std::string driven(const json& odometry, const json& wheels) {
+  const json robot = {{"left_wheel_diameter", 0.15},
+                      {"right_wheel_diameter", 0.15},
+                      {"track_width", 0.4},
+                      {"ticks_per_rev", 4096}};
+  const json move = {{"move", "a move"}, {"begin", 1.0},     {"end", 2.0},      {"odometry", odometry},
+                     {"lidar", nullptr}, {"error", nullptr}, {"wheels", wheels}};
+  return json{{"format", "odomcalib-moves/1"}, {"moves", {move, move}}, {"robot", robot}}.dump();
+}
+
+TEST_F(CommandLine, what_cannot_have_been_measured_of_a_move_is_refused_with_the_unit_that_was_meant) {
+  write("line.json", driven({1.003, 0.0, 0.0}, {13.374, 13.374}));
+  write("turn.json", driven({0.0, 0.0, 6.283}, {-16.755, 16.755}));
+  const std::string line = "straight --of line.json --out got.json --measured ",
+                    turn = "spin --of turn.json --out got.json --measured-turn ";
+  for (const auto& [call, status, said] :
+       {std::tuple(line + "1020", 2, "1020 m was measured of a move of 1.003 m: in mm that is 1.02 m"),
+        {line + "102", 2, "in cm that is 1.02 m"},
+        {line + "40.2", 2, "in inches that is 1.02108 m"},
+        {line + "1,02", 2, "what follows a decimal point"},
+        {line + "1,1.9", 3, "left wheel diameter would be"},
+        {line + "1.02m", 2, "state it in m, with a point, for example 1.0132"},
+        {turn + "6.2832", 2, "in rad that is 360.001 degrees"},
+        {turn + "1", 2, "in turns that is 360 degrees"},
+        {turn + "360deg", 2, "state it in degrees, with a point, for example 361.5"}}) {
+    const Outcome got = ctl(call);
+    EXPECT_EQ(got.status, status) << call << got.out;
+    EXPECT_THAT(got.err, HasSubstr(said)) << call;
+    EXPECT_FALSE(exists("got.json")) << call;
+    EXPECT_EQ(got.out, "") << call;
+  }
+  // Before anything moves.
+  const Outcome before = ctl("--socket nobody straight --yes --measured 1020");
+  EXPECT_EQ(before.status, 2) << before.err;
+  for (const std::string& call : {line + "1.02", line + "1.02,1.021", turn + "368"}) {
+    fs::remove(folder_ / "got.json");
+    EXPECT_EQ(ctl(call).status, 0) << call;
+    EXPECT_TRUE(exists("got.json")) << call;
+  }
+}
+
 TEST_F(CommandLine, values_that_are_no_numbers_are_refused_by_name_where_they_are_used) {
   auto broken = calibration();
   broken.parameters.back().second.value = std::nan("");
