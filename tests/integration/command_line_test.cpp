@@ -587,9 +587,12 @@ TEST_F(CommandLine, solve_has_large_pages_where_the_kernel_gives_them_on_request
 /// Gives the lease to everybody, and its calibration to whoever wants to drive.
 class CannedDaemon {
  public:
-  CannedDaemon(const fs::path& socket, const Calibration& calibration, std::function<void()> while_driving)
+  /// @param answers to other methods than those of the lease and Calibrate, by their names
+  CannedDaemon(const fs::path& socket, const Calibration& calibration, std::function<void()> while_driving,
+               json answers = json::object())
       : server_(std::move(ControlServer::create(socket, "").value())),
         calibration_(json::parse(to_json(calibration))),
+        answers_(std::move(answers)),
         while_driving_(std::move(while_driving)),
         thread_([this] { serve(); }) {}
   ~CannedDaemon() {
@@ -612,6 +615,7 @@ class CannedDaemon {
   }
   json answer(const std::string& method) {
     if (method == "Acquire") return {{"lease", "mine"}, {"ttl_ms", 120}};
+    if (answers_.contains(method)) return answers_[method];
     if (method != "Calibrate") return {{"ttl_ms", 120}};
     while_driving_();
     return {{"result", {{"recording", "/state/recordings/drive.lcmlog"}, {"calibration", calibration_}}}};
@@ -619,7 +623,7 @@ class CannedDaemon {
 
   ControlServer server_;
   double now_ = 0.0;  ///< s
-  json calibration_;
+  json calibration_, answers_;
   std::function<void()> while_driving_;
   std::atomic<bool> over_{false};
   std::thread thread_;
@@ -634,6 +638,24 @@ TEST_F(CommandLine, a_result_that_cannot_be_written_after_the_drive_is_printed_a
   EXPECT_THAT(got.out, AllOf(HasSubstr("ACCEPTED"), HasSubstr("400.000")));
   EXPECT_THAT(got.err, AllOf(HasSubstr("/state/calibrations/drive.json"),
                              HasSubstr("/state/recordings/drive.lcmlog")));
+}
+
+TEST_F(CommandLine, a_wait_that_ends_says_what_was_missing) {
+  const auto daemon = [this](const char* state) {
+    return std::make_unique<CannedDaemon>(
+        folder_ / "control", calibration(), [] {}, json{{"GetStatus", {{"status", {{"state", state}}}}}});
+  };
+  auto busy = daemon("moving: straight");
+  for (const std::string timeout : {"0", "0.3"}) {
+    const Outcome late = ctl("--socket control wait --until idle --timeout " + timeout);
+    EXPECT_EQ(late.status, 10) << late.err;
+    EXPECT_THAT(late.err,
+                AllOf(HasSubstr("not idle after"), ContainsRegex("after [0-9.]+ s: odomcalibd: moving"),
+                      Not(HasSubstr("does not answer"))));
+  }
+  busy.reset();
+  const auto idle = daemon("idle");
+  EXPECT_EQ(ctl("--socket control wait --until idle --timeout 0").status, 0);
 }
 
 class Completion : public CommandLine {
