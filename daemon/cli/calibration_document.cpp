@@ -217,7 +217,7 @@ bool runs_ros2(const Calibration& calibration) {
 }
 
 std::string next_step(const Calibration& calibration) {
-  if (calibration.verdict == Verdict::accepted)
+  if (calibration.verdict == Verdict::accepted && calibration.next_step.empty())
     return is_from_elsewhere(calibration)
                ? "Next: odomcalibctl export --what diff_drive prints these values for ros2_control, --what "
                  "toml for other programs."

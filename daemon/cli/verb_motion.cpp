@@ -153,7 +153,12 @@ int calibrate(const Session& session, const MotionOptions& options) {
   auto solved = drive_and_solve(session, options, wanted);
   if (!solved) return report_error(solved.error(), session.json);
   const Solved best = second_drive(session, options, std::move(solved).value());
-  if (session.json == JsonMode::off) print_calibration(best.calibration, session);
+  if (session.json == JsonMode::off) {
+    Calibration shown = best.calibration;
+    if (before.value() && shown.verdict == Verdict::accepted)
+      shown.next_step = "these values are tried now, and stored unless odometry is worse with them";
+    print_calibration(shown, session);
+  }
   if (!options.file.empty())
     if (auto written = write_output(options.file, to_json(best.calibration)); !written)
       return report_lost(written.error(), best);

@@ -610,10 +610,12 @@ class CannedDaemon {
       (void)poll(polled.data(), polled.size(), 5);
       server_.step(now_ += 0.005);
       while (const auto incoming = server_.next_call())
-        server_.reply(incoming->client, control::encode_reply(answer(incoming->call.name()).dump()));
+        server_.reply(incoming->client, control::encode_reply(answer(incoming->call).dump()));
     }
   }
-  json answer(const std::string& method) {
+  json answer(const control::Call& call) {
+    const std::string method = call.name();
+    if (call.parameters.value("dry_run", false)) return {{"result", json::object()}};
     if (method == "Acquire") return {{"lease", "mine"}, {"ttl_ms", 120}};
     if (answers_.contains(method)) return answers_[method];
     if (method != "Calibrate") return {{"ttl_ms", 120}};
@@ -656,6 +658,22 @@ TEST_F(CommandLine, a_wait_that_ends_says_what_was_missing) {
   busy.reset();
   const auto idle = daemon("idle");
   EXPECT_EQ(ctl("--socket control wait --until idle --timeout 0").status, 0);
+}
+
+TEST_F(CommandLine, values_that_are_tried_at_once_are_not_to_be_applied_next) {
+  const json answers = json::parse(R"({
+    "GetParameters": {"parameters": []},
+    "Straight": {"result": {"moves": [{"lidar": [1, 0, 0], "error": {"distance": 0.001, "yaw": 0.001}}]}},
+    "Spin": {"result": {"moves": [{"lidar": [0, 0, 6.28], "error": {"distance": 0, "yaw": 0.001}}]}},
+    "Apply": {"result": {}},
+    "Store": {"result": {}}})");
+  const CannedDaemon daemon(
+      folder_ / "control", calibration(), [] {}, answers);
+  const Outcome got = ctl("--socket control calibrate --yes --one-drive --apply");
+  EXPECT_EQ(got.status, 0) << got.err;
+  EXPECT_THAT(got.out, AllOf(HasSubstr("ACCEPTED"), HasSubstr("Next: these values are tried now"),
+                             HasSubstr("stored, and proven"), Not(HasSubstr("odomcalibctl apply"))));
+  EXPECT_THAT(ctl("--socket control calibrate --yes --one-drive").out, HasSubstr("odomcalibctl apply"));
 }
 
 class Completion : public CommandLine {
