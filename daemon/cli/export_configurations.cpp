@@ -20,22 +20,9 @@
 #include "odomcalib_version.hpp"
 #include "proto/base_quantities.hpp"
 #include "proto/calibration/report_data.hpp"
-#include "proto/recording/wheel_motion.hpp"
 
 namespace odomcalib::cli {
 namespace {
-
-/// Counts of the encoder; none where the recordings hold the motion as something else and nobody stated any.
-std::optional<double> counts_a_turn(const Calibration& calibration) {
-  const double counts = calibration.robot.ticks_per_rev;
-  const auto is_made = [](const DataUse& data) {
-    return std::any_of(data.choices.begin(), data.choices.end(),
-                       [](const std::string& choice) { return choice.starts_with(kMotionFrom); });
-  };
-  const bool stand_for_none =
-      counts == kFineCountsPerRev && std::any_of(calibration.data.begin(), calibration.data.end(), is_made);
-  return counts > 0.0 && !stand_for_none ? std::optional(counts) : std::nullopt;
-}
 
 /// x, y, yaw; none where it was not measured, as by poses of the base itself.
 std::optional<std::array<double, 3>> lidar_pose(const Calibration& calibration) {

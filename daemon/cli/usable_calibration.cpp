@@ -1,9 +1,11 @@
 #include "daemon/cli/usable_calibration.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 
 #include "proto/base_quantities.hpp"
+#include "proto/recording/wheel_motion.hpp"
 
 namespace odomcalib::cli {
 namespace {
@@ -37,6 +39,17 @@ Result<Dimensions> dimensions_of(const Calibration& calibration, const std::stri
     out.*kDimensionMembers[k] = *stated;
   }
   return out;
+}
+
+std::optional<double> counts_a_turn(const Calibration& calibration) {
+  const double counts = calibration.robot.ticks_per_rev;
+  const auto is_made = [](const DataUse& data) {
+    return std::any_of(data.choices.begin(), data.choices.end(),
+                       [](const std::string& choice) { return choice.starts_with(kMotionFrom); });
+  };
+  const bool stand_for_none =
+      counts == kFineCountsPerRev && std::any_of(calibration.data.begin(), calibration.data.end(), is_made);
+  return counts > 0.0 && !stand_for_none ? std::optional(counts) : std::nullopt;
 }
 
 Error refusal_of(const Calibration& calibration, const std::string& where) {

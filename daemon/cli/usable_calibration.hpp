@@ -1,6 +1,7 @@
 // Calibration files whose values are about to be used, not only shown.
 #pragma once
 
+#include <optional>
 #include <string>
 
 #include "proto/calibration/calibration.hpp"
@@ -18,6 +19,9 @@ struct Dimensions {
   [[nodiscard]] double mean() const { return 0.5 * (left + right); }
 };
 Result<Dimensions> dimensions_of(const Calibration& calibration, const std::string& where);
+
+/// Counts of the encoder; none where the recordings hold the motion as something else and nobody stated any.
+std::optional<double> counts_a_turn(const Calibration& calibration);
 
 /// "refused: why", as the error of whoever will not use it.
 Error refusal_of(const Calibration& calibration, const std::string& where);
