@@ -5,10 +5,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 #include "calib/odometry/predict.hpp"
 #include "daemon/cli/calibration_document.hpp"
 #include "daemon/cli/display.hpp"
+#include "daemon/cli/usable_calibration.hpp"
 #include "proto/angles.hpp"
 #include "proto/base_quantities.hpp"
 #include "proto/calibration/utc.hpp"
@@ -177,10 +179,12 @@ Section files_section(const ComparedRobot& robot) {
   return section;
 }
 
+/// Whether the counts of a turn differ, among the files whose recordings have counts.
 bool counts_differ(const ComparedRobot& robot) {
-  return std::any_of(robot.files.begin(), robot.files.end(), [&](const ComparedFile& file) {
-    return file.calibration.robot.ticks_per_rev != robot.files.front().calibration.robot.ticks_per_rev;
-  });
+  std::set<double> counts;
+  for (const ComparedFile& file : robot.files)
+    if (const auto of_turn = counts_a_turn(file.calibration)) counts.insert(*of_turn);
+  return counts.size() > 1;
 }
 
 /// Basis on which to read the numbers below.

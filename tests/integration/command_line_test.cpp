@@ -676,6 +676,24 @@ TEST_F(CommandLine, values_that_are_tried_at_once_are_not_to_be_applied_next) {
   EXPECT_THAT(ctl("--socket control calibrate --yes --one-drive").out, HasSubstr("odomcalibctl apply"));
 }
 
+TEST_F(CommandLine, counts_are_compared_where_recordings_have_them) {
+  const auto of = [](const char* digest, double counts, bool of_angles) {
+    Calibration one = calibration();
+    one.robot.ticks_per_rev = counts;
+    one.data.resize(1);
+    one.data[0].name = one.data[0].sha256 = digest;
+    if (of_angles) one.data[0].choices = {"wheel motion from angles of /joint_states"};
+    return one;
+  };
+  save("angles.json", of("1", 1 << 20, true));
+  save("counts.json", of("2", 4096.0, false));
+  save("others.json", of("3", 8192.0, false));
+  const Outcome alike = ctl("compare angles.json counts.json");
+  EXPECT_EQ(alike.status, 0) << alike.err;
+  EXPECT_THAT(alike.out, Not(HasSubstr("ticks_per_rev")));
+  EXPECT_THAT(ctl("compare others.json counts.json").out, HasSubstr("different ticks_per_rev"));
+}
+
 class Completion : public CommandLine {
  protected:
   /// Completions that bash offers behind these words, the last of which is being typed.

@@ -128,6 +128,7 @@ TEST(Compare, says_in_words_what_changed_and_that_the_metre_cancels) {
   EXPECT_THAT(told, HasSubstr("effects that came: backlash"));
   files[1].calibration.scale = {1.002, 0.001, "stated"};
   EXPECT_THAT(text(value_of(compare(files, {})), {}), HasSubstr("metres of the references are not the same"));
+  files[0].calibration.robot.ticks_per_rev = 8192.0;
   files[1].calibration.robot.ticks_per_rev = 4096.0;
   EXPECT_THAT(text(value_of(compare(files, {})), {}), HasSubstr("different ticks_per_rev"));
   EXPECT_THAT(text(value_of(compare({file("a", "", 0, random), file("b", "", 1, random)}, {})), {}),
