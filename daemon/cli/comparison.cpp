@@ -132,6 +132,16 @@ std::optional<Error> not_comparable(const std::vector<ComparedRobot>& robots) {
                last, "a refused calibration has no values to compare; odomcalibctl report FILE says why"};
 }
 
+/// Nobody could say whether something changed.
+std::optional<Error> nothing_in_common(const ComparedRobot& robot) {
+  const auto is_empty = [](const comparison::Difference& step) { return step.joint.freedom == 0; };
+  if (!std::all_of(robot.steps.begin(), robot.steps.end(), is_empty)) return std::nullopt;
+  return Error{
+      ErrorCode::usage,
+      "has no value in common with " + file_name(robot.usable_file(0).path) + " that has a deviation in both",
+      robot.usable_file(1).path, "compare calibrations of the same values; odomcalibctl report FILE"};
+}
+
 std::optional<double> leading_number(const std::string& text, std::string_view unit) {
   if (!text.ends_with(unit)) return std::nullopt;
   return number_from<double>(std::string_view(text).substr(0, text.size() - unit.size()));
@@ -157,6 +167,8 @@ Result<std::vector<ComparedRobot>> compare(std::vector<ComparedFile> files,
   if (!options.by_robot)
     if (auto error = not_comparable(robots)) return *error;
   for (ComparedRobot& robot : robots) compute(robot);
+  if (!options.by_robot)
+    if (auto error = nothing_in_common(robots.front())) return *error;
   std::stable_sort(robots.begin(), robots.end(), [](const ComparedRobot& a, const ComparedRobot& b) {
     return a.standing.is_before(b.standing);
   });

@@ -59,8 +59,8 @@ std::string file_name(const std::string& path);
 Result<double> error_of_metre_from_text(const std::string& text);
 
 /// Groups in the order of how urgent they are.
-/// Errors: usage (files of two robots without by_robot; a single file, or two of one recording, without
-/// by_robot), refused (of a robot that was named alone fewer than two were not refused).
+/// Errors: usage (without by_robot: files of two robots, a single file, two of one recording, or files
+/// without a value in common), refused (of a robot that was named alone fewer than two were not refused).
 Result<std::vector<ComparedRobot>> compare(std::vector<ComparedFile> files, const ComparisonOptions& options);
 
 }  // namespace odomcalib::cli

@@ -56,7 +56,11 @@ const Change* farthest(const Difference& difference) {
   return found == all.end() ? nullptr : &*found;
 }
 
+/// No value is in both with a deviation.
+bool is_empty(const Difference& difference) { return difference.joint.freedom == 0; }
+
 std::string what_changed(const Difference& difference) {
+  if (is_empty(difference)) return "nothing in common";
   const auto names = names_of_changed(difference.parameters);
   if (!names.empty()) return fmt::format("{}", fmt::join(names, ", "));
   if (!difference.joint.is_change()) return "nothing";
@@ -127,10 +131,13 @@ Section difference_section(const std::string& title, const Difference& differenc
   Section section{title, {}, {{"", "before", "after", "change", "+-2 sigma", "unit", "sigmas", ""}, {}}};
   for (const Change& one : difference.parameters) section.table.rows.push_back(change_row(one));
   for (const Change& one : difference.effects) section.table.rows.push_back(change_row(one));
-  add_line(section,
-           fmt::format("changed: {}; joint test of \"nothing changed\": chi-squared {:.1f} of {}, {}",
-                       what_changed(difference), difference.joint.statistic, difference.joint.freedom,
-                       p_text(difference.joint.p_value)));
+  if (is_empty(difference))
+    add_line(section, "nothing to compare: no value is in both with a deviation");
+  else
+    add_line(section,
+             fmt::format("changed: {}; joint test of \"nothing changed\": chi-squared {:.1f} of {}, {}",
+                         what_changed(difference), difference.joint.statistic, difference.joint.freedom,
+                         p_text(difference.joint.p_value)));
   add_line(section, in_words(difference));
   add_line(section, effects_text(difference));
   return section;
@@ -148,10 +155,10 @@ Section steps_section(const ComparedRobot& robot) {
     const auto shown = [](const std::optional<comparison::Estimate>& error, double factor) {
       return error ? fmt::format("{:+.2f}", error->value * factor) : std::string("-");
     };
-    section.table.rows.push_back({label_of(robot, robot.usable_file(k)),
-                                  label_of(robot, robot.usable_file(k + 1)), shown(step.metre_error, 1000.0),
-                                  shown(step.turn_error, kDegrees), fmt::format("{:.2g}", step.joint.p_value),
-                                  what_changed(step)});
+    section.table.rows.push_back(
+        {label_of(robot, robot.usable_file(k)), label_of(robot, robot.usable_file(k + 1)),
+         shown(step.metre_error, 1000.0), shown(step.turn_error, kDegrees),
+         is_empty(step) ? "-" : fmt::format("{:.2g}", step.joint.p_value), what_changed(step)});
   }
   section.lines = {"metre, turn: what odometry by the values before reads too much, or (-) too little"};
   return section;
@@ -187,9 +194,21 @@ bool counts_differ(const ComparedRobot& robot) {
   return counts.size() > 1;
 }
 
+/// Files that were taken to be of the only robot that another one names.
+std::string unnamed_text(const ComparedRobot& robot) {
+  std::vector<std::string> unnamed;
+  for (const ComparedFile& file : robot.files)
+    if (!robot.robot_id.empty() && file.calibration.robot.robot_id.empty())
+      unnamed.push_back(file_name(file.path));
+  if (unnamed.empty()) return "";
+  return fmt::format("{} {} no robot: taken to be of {}", fmt::join(unnamed, ", "),
+                     unnamed.size() == 1 ? "names" : "name", robot.robot_id);
+}
+
 /// Basis on which to read the numbers below.
 Section basis_section(const ComparedRobot& robot) {
   Section section{"", {files_text(robot)}, {}};
+  if (const std::string unnamed = unnamed_text(robot); !unnamed.empty()) section.lines.push_back(unnamed);
   if (counts_differ(robot))
     section.lines.emplace_back("they were solved with different ticks_per_rev: diameters are not comparable");
   if (robot.steps.empty()) return section;
@@ -318,11 +337,12 @@ Section pictures_section(const ComparedRobot& robot, bool with_lines) {
 // --- One robot, many robots ------------------------------------------------------------------------------
 
 std::string finding(const ComparedRobot& robot) {
-  if (robot.steps.empty()) return "nothing to compare";
+  if (std::all_of(robot.steps.begin(), robot.steps.end(), is_empty)) return "nothing to compare";
   const auto& test = robot.usable.size() > 2 ? robot.all : robot.steps.front().joint;
   const bool changed = test.is_change() || std::any_of(robot.steps.begin(), robot.steps.end(),
                                                        [](const Difference& one) { return one.is_change(); });
-  return fmt::format("{} ({})", changed ? "something changed" : "nothing changed", p_text(test.p_value));
+  const char* what = changed ? "something changed" : "nothing changed";
+  return test.freedom == 0 ? what : fmt::format("{} ({})", what, p_text(test.p_value));
 }
 
 /// Sections, the most important first: the whole change, where it leads, and then how it came about.

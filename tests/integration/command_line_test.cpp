@@ -694,6 +694,26 @@ TEST_F(CommandLine, counts_are_compared_where_recordings_have_them) {
   EXPECT_THAT(ctl("compare others.json counts.json").out, HasSubstr("different ticks_per_rev"));
 }
 
+TEST_F(CommandLine, a_comparison_says_whose_files_it_took_and_that_there_was_nothing_to_compare) {
+  Calibration named = calibration();
+  named.robot.robot_id = "r1";
+  save("named.json", named);
+  EXPECT_THAT(ctl("compare named.json cal.json").out,
+              HasSubstr("cal.json names no robot: taken to be of r1"));
+  EXPECT_THAT(ctl("compare named.json named.json").out, Not(HasSubstr("names no robot")));
+  Calibration wheels = calibration(), track = calibration();
+  wheels.parameters.pop_back();
+  track.parameters.erase(track.parameters.begin(), track.parameters.begin() + 2);
+  save("wheels.json", wheels);
+  save("track.json", track);
+  const Outcome none = ctl("compare wheels.json track.json");
+  EXPECT_EQ(none.status, 2) << none.out;
+  EXPECT_THAT(none.err, AllOf(HasSubstr("track.json"), HasSubstr("no value in common with wheels.json")));
+  const Outcome some = ctl("compare wheels.json track.json cal.json");
+  EXPECT_EQ(some.status, 0) << some.err;
+  EXPECT_THAT(some.out, HasSubstr("nothing in common"));
+}
+
 class Completion : public CommandLine {
  protected:
   /// Completions that bash offers behind these words, the last of which is being typed.
