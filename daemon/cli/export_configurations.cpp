@@ -1,12 +1,10 @@
 #include "daemon/cli/export_configurations.hpp"
 
-#include <fmt/chrono.h>
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <ctime>
 #include <iterator>
 #include <numbers>
 #include <optional>
@@ -20,6 +18,7 @@
 #include "odomcalib_version.hpp"
 #include "proto/base_quantities.hpp"
 #include "proto/calibration/report_data.hpp"
+#include "proto/calibration/utc.hpp"
 
 namespace odomcalib::cli {
 namespace {
@@ -141,16 +140,19 @@ std::string commented(const std::string& what, std::string text) {
 /// The robot, the recordings, the program, and its verdict on the result.
 std::string provenance(const Calibration& calibration, const std::string& what) {
   const std::string robot = calibration.robot.robot_id.empty() ? "" : " of " + calibration.robot.robot_id;
-  std::string text = commented(
-      what, "calibration" + robot + " by odomcalib " + kVersion + ": " + name_of(calibration.verdict));
+  const std::string solved_by = calibration.settings ? calibration.settings->version : "";
+  const auto& driven = calibration.driven;
+  std::string text =
+      commented(what, "calibration" + robot + (solved_by.empty() ? "" : " by odomcalib " + solved_by) +
+                          (driven ? ", driven " + utc_span(driven->begin, driven->end) : "") + ": " +
+                          name_of(calibration.verdict) +
+                          (solved_by == kVersion ? "" : fmt::format("; exported by odomcalib {}", kVersion)));
   for (const DataUse& data : calibration.data) {
-    // Stamps that count from 1970 say the day; others count from any start.
-    constexpr double kSomeYears_s = 1e9;
-    const bool dated = data.begin && *data.begin > kSomeYears_s;
-    const std::string day =
-        dated ? fmt::format(", {:%Y-%m-%d}", fmt::gmtime(static_cast<std::time_t>(*data.begin))) : "";
+    constexpr std::size_t kDay = 10;  // characters of "2026-05-04"
+    const bool dated = data.begin && is_date(*data.begin);
     text +=
-        commented(what, "from " + data.name + day + (data.sha256.empty() ? "" : ", sha256 " + data.sha256));
+        commented(what, "from " + data.name + (dated ? ", " + utc_text(*data.begin).substr(0, kDay) : "") +
+                            (data.sha256.empty() ? "" : ", sha256 " + data.sha256));
   }
   if (what == "arcos")
     text +=

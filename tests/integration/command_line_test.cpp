@@ -714,6 +714,16 @@ TEST_F(CommandLine, a_comparison_says_whose_files_it_took_and_that_there_was_not
   EXPECT_THAT(some.out, HasSubstr("nothing in common"));
 }
 
+TEST_F(CommandLine, a_configuration_says_when_its_robot_was_driven_and_which_version_solved) {
+  Calibration dated = calibration();
+  dated.driven = Driven{1.7e9, 1.7e9 + 60.0};
+  dated.settings.emplace().version = "0.1.7";
+  save("dated.json", dated);
+  EXPECT_THAT(ctl("export dated.json --what diff_drive").out,
+              AllOf(HasSubstr("driven 2023-11-14, 22:13 to 22:14 UTC"), HasSubstr("by odomcalib 0.1.7"),
+                    ContainsRegex("exported by odomcalib [0-9]")));
+}
+
 class Completion : public CommandLine {
  protected:
   /// Completions that bash offers behind these words, the last of which is being typed.

@@ -334,7 +334,7 @@ Calibration for_export() {
 TEST(Export, of_a_configuration_says_where_it_is_from_and_what_it_cannot_hold) {
   for (const char* what : {"toml", "diff_drive", "ros_arduino", "arcos"}) {
     const auto text = value_of(exported(for_export(), what));
-    EXPECT_THAT(text, HasSubstr("calibration of r-1 by odomcalib")) << what;
+    EXPECT_THAT(text, HasSubstr("calibration of r-1: accepted; exported by odomcalib")) << what;
     EXPECT_THAT(text, HasSubstr(", 2025-06-15, sha256 abc")) << what;
     EXPECT_THAT(text, HasSubstr("not held here: wheel_eccentricity.left_cos = 0.012")) << what;
     EXPECT_THAT(text, HasSubstr("not held here: time_offset.offset = 0.05 s")) << what;
