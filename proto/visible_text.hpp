@@ -11,6 +11,9 @@ namespace odomcalib {
 /// every byte that is no UTF-8 becomes "?".
 std::string visible(std::string_view text);
 
+/// A word of a command line as a shell takes it whole: in quotes where it needs them.
+std::string shell_word(const std::string& word);
+
 /// Hands everything on as visible() text. Keeps nothing back: what is written at once must be whole
 /// characters.
 class VisibleText final : public std::streambuf {

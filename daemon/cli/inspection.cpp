@@ -8,6 +8,7 @@
 #include "calib/ingest/recording_check.hpp"
 #include "daemon/cli/settings.hpp"
 #include "proto/base_quantities.hpp"
+#include "proto/visible_text.hpp"
 
 namespace odomcalib::cli {
 namespace {
@@ -136,6 +137,7 @@ Result<Inspection> inspect(const std::string& path, const RecordingOptions& opti
   const UnpackLimit limit = unpack_limit_of(options.unpack_limit);
   Inspection found;
   found.path = path;
+  found.solve_arguments = shell_word(path) + to_arguments(options);
   auto recording = read_recording_with_overview(path, &robot.value(), topics.value(), limit, found.overview);
   if (!recording && recording.error().code == ErrorCode::io) return recording.error();
   if (!recording) found.error = recording.error();

@@ -42,6 +42,7 @@ struct Motion {
 
 struct Inspection {
   std::string path;
+  std::string solve_arguments;  ///< the recording and the options it was read with, as a shell takes them
   Overview overview;
   std::optional<Error> error;          ///< why solve would end before it measures anything
   std::optional<Recording> recording;  ///< none where nothing could be read

@@ -175,7 +175,7 @@ bool has(const Inspection& found, Supply supply) {
 std::string next_text(const Inspection& found) {
   if (found.error) return "Next: mend what solve would stop at (\"nothing as it stands\" above).";
   if (has(found, Supply::missing)) return "Next: solve may refuse this; drive what is missing.";
-  const std::string next = "Next: odomcalibctl solve " + found.path;
+  const std::string next = "Next: odomcalibctl solve " + found.solve_arguments;
   return has(found, Supply::little) ? next + "; what has little motion will be known less well" : next;
 }
 

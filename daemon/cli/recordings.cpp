@@ -7,6 +7,7 @@
 
 #include "daemon/cli/output.hpp"
 #include "daemon/config/robot_file.hpp"
+#include "proto/visible_text.hpp"
 
 namespace odomcalib::cli {
 
@@ -36,6 +37,18 @@ const Recording* same_drive(const std::vector<Recording>& recordings, const Reco
 }
 
 }  // namespace
+
+std::string to_arguments(const RecordingOptions& options) {
+  std::string text;
+  const auto add = [&text](const char* name, const std::string& value) {
+    if (!value.empty()) text += fmt::format(" {} {}", name, shell_word(value));
+  };
+  add("--robot", options.robot_file);
+  add("--robot-id", options.robot_id);
+  if (options.unpack_limit > 0.0) add("--unpack-limit", fmt::format("{:g}", options.unpack_limit));
+  for (const std::string& topic : options.topics) add("--topic", topic);
+  return text;
+}
 
 Result<TopicChoices> topic_choices_of(const RecordingOptions& options) {
   TopicChoices choices;

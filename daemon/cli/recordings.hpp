@@ -27,6 +27,9 @@ UnpackLimit unpack_limit_of(double mebibytes);
 /// --robot, --robot-id, --topic and --unpack-limit, alike for every verb that reads recordings.
 void add_reading_options(CLI::App& verb, RecordingOptions& options);
 
+/// These options as a shell takes them, each with a space before it.
+std::string to_arguments(const RecordingOptions& options);
+
 /// Topics chosen by --topic. Error: usage.
 Result<TopicChoices> topic_choices_of(const RecordingOptions& options);
 

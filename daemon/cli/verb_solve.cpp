@@ -20,6 +20,7 @@
 #include "proto/calibration/calibration.hpp"
 #include "proto/calibration/scale.hpp"
 #include "proto/file_bytes.hpp"
+#include "proto/visible_text.hpp"
 
 namespace odomcalib::cli {
 namespace {
@@ -85,7 +86,7 @@ int report_unreadable(const Error& error, const std::vector<std::string>& record
   const bool said = error.remedy.find("odomcalibctl ") != std::string::npos;
   const bool of_recording = std::ranges::find(recordings, error.where) != recordings.end();
   if (!said && of_recording && error.code != ErrorCode::io)
-    tell("what it holds: odomcalibctl inspect " + error.where);
+    tell("what it holds: odomcalibctl inspect " + shell_word(error.where));
   return status;
 }
 

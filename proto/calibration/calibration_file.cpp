@@ -1,6 +1,7 @@
 #include "proto/calibration/calibration.hpp"
 #include "proto/file_bytes.hpp"
 #include "proto/recording/recording.hpp"
+#include "proto/visible_text.hpp"
 
 namespace odomcalib {
 
@@ -10,7 +11,7 @@ Result<Calibration> read_calibration(const std::filesystem::path& path) {
   auto calibration = calibration_from_json(bytes.value(), path.string());
   if (!calibration && is_recording(bytes.value()))
     return Error{ErrorCode::format, "is a recording, not a calibration", path.string(),
-                 "solve it first: odomcalibctl solve " + path.string() + " --out cal.json"};
+                 "solve it first: odomcalibctl solve " + shell_word(path.string()) + " --out cal.json"};
   return calibration;
 }
 

@@ -724,6 +724,42 @@ TEST_F(CommandLine, a_configuration_says_when_its_robot_was_driven_and_which_ver
                     ContainsRegex("exported by odomcalib [0-9]")));
 }
 
+/// A metre and a half out and back, two turns each way.
+std::string tour() {
+  std::string text = R"({"type":"ticks","t":0,"left":0,"right":0})"
+                     "\n";
+  double t = 0.0, left = 0.0, right = 0.0, x = 0.0, yaw = 0.0;
+  for (const auto& [forward, turn] : {std::pair(0.015, 0.0), {-0.015, 0.0}, {0.0, 0.06}, {0.0, -0.06}})
+    for (int k = 0; k < (turn == 0.0 ? 100 : 210); ++k) {
+      constexpr double kCounts_m = 4096.0 / (M_PI * 0.15);
+      t += 0.1;
+      left += kCounts_m * (forward - 0.2 * turn);
+      right += kCounts_m * (forward + 0.2 * turn);
+      x += forward;
+      yaw += turn;
+      const json ticks = {
+          {"type", "ticks"}, {"t", t}, {"left", std::lround(left)}, {"right", std::lround(right)}};
+      const json pose = {{"type", "pose"}, {"t", t}, {"x", x}, {"y", 0.0}, {"yaw", yaw}};
+      text += ticks.dump() + "\n" + pose.dump() + "\n";
+    }
+  return text;
+}
+
+TEST_F(CommandLine, the_next_command_can_be_typed_as_it_stands) {
+  write("robot.toml", "wheel_diameter = 0.15\ntrack_width = 0.4\nticks_per_rev = 4096\n");
+  write("Anna's 1.jsonl", tour());
+  const std::string arguments = R"('Anna'\''s 1.jsonl' --robot robot.toml)";
+  const Outcome got = ctl("inspect " + arguments);
+  EXPECT_EQ(got.status, 0) << got.err;
+  EXPECT_THAT(got.out, HasSubstr("Next: odomcalibctl solve " + arguments + "\n"));
+  write("robot.jsonl", R"({"type":"robot","wheel_diameter":0.15,"track_width":0.4,"ticks_per_rev":4096})"
+                       "\n" +
+                           tour());
+  EXPECT_THAT(ctl("inspect robot.jsonl").out, HasSubstr("Next: odomcalibctl solve robot.jsonl\n"));
+  EXPECT_THAT(ctl("report " + std::string(R"('Anna'\''s 1.jsonl')")).err,
+              HasSubstr(R"(odomcalibctl solve 'Anna'\''s 1.jsonl' --out)"));
+}
+
 class Completion : public CommandLine {
  protected:
   /// Completions that bash offers behind these words, the last of which is being typed.
