@@ -114,12 +114,13 @@ int solve_recordings(const SolveArguments& options, const Session& session) {
   calibration.settings = settings_of(options);
   if (options.odometer_km) calibration.odometer = 1000.0 * *options.odometer_km;
   line.clear();
-  if (auto written = write_results(options, solution); !written)
-    return report_error(written.error(), session.json);
+  const auto written = write_results(options, solution);
   if (session.json == JsonMode::off)
     print_calibration(calibration, session);
   else
     print_json(to_json(calibration), session.json);
+  // The minutes of a solve must not be lost with a file: the result was printed.
+  if (!written) return report_error(written.error(), JsonMode::off);
   return calibration.verdict == Verdict::refused ? kRefused : kDone;
 }
 

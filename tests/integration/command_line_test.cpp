@@ -760,6 +760,16 @@ TEST_F(CommandLine, the_next_command_can_be_typed_as_it_stands) {
               HasSubstr(R"(odomcalibctl solve 'Anna'\''s 1.jsonl' --out)"));
 }
 
+TEST_F(CommandLine, a_result_that_cannot_be_written_after_a_solve_is_printed) {
+  const Outcome got = ctl("solve drive.jsonl --effects none --out /dev/full");
+  EXPECT_EQ(got.status, 1) << got.out;
+  EXPECT_THAT(got.out, HasSubstr("REFUSED"));
+  EXPECT_THAT(got.err, HasSubstr("/dev/full"));
+  const Outcome as_json = ctl("solve drive.jsonl --effects none --json --out /dev/full");
+  EXPECT_EQ(as_json.status, 1) << as_json.err;
+  EXPECT_EQ(json::parse(as_json.out, nullptr, false).value("verdict", ""), "refused") << as_json.out;
+}
+
 class Completion : public CommandLine {
  protected:
   /// Completions that bash offers behind these words, the last of which is being typed.
