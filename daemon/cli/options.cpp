@@ -75,6 +75,13 @@ CLI::Validator finite(double least, double most) {
   return {problem, bounded ? fmt::format("in [{} - {}]", least, most) : ""};
 }
 
+CLI::Option* add_output(CLI::App& verb, const std::string& names, std::string& path,
+                        const std::string& help) {
+  return verb.add_option(names, path, help)->transform([](const std::string& given) {
+    return given == "-" ? std::string("/dev/stdout") : given;
+  });
+}
+
 Result<void> check_outputs(const std::vector<NamedFile>& outputs, const std::vector<NamedFile>& inputs) {
   std::vector<NamedFile> taken = inputs;
   for (const NamedFile& output : outputs) {

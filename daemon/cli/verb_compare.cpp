@@ -76,8 +76,8 @@ void add_compare(CLI::App& app, Session& session) {
   verb->add_flag("--trend", options->trend, "a line through the values over date and distance");
   verb->add_option("--until", options->until,
                    "when the error of a metre passes this, as the trend goes on: 5mm/m or 0.5%");
-  verb->add_option("--csv", options->csv, "CSV to write: each value, and its change since the one before");
-  verb->add_option("--html", options->html, "page to write, with a picture of each parameter");
+  add_output(*verb, "--csv", options->csv, "CSV to write: each value, and its change since the one before");
+  add_output(*verb, "--html", options->html, "page to write, with a picture of each parameter");
 }
 
 }  // namespace odomcalib::cli

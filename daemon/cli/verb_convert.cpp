@@ -74,7 +74,7 @@ void add_convert(CLI::App& app, Session& session) {
   const auto [verb, options] =
       add_verb(app, session, "convert", "Write any recording as JSON Lines", convert_recording);
   verb->add_option("RECORDING", options->recording, "in any form that solve reads")->required();
-  verb->add_option("--out", options->out, "file to write: .jsonl, or .jsonl.gz to pack it")->required();
+  add_output(*verb, "--out", options->out, "file to write: .jsonl, or .jsonl.gz to pack it")->required();
   add_reading_options(*verb, options->reading);
 }
 

@@ -121,7 +121,7 @@ void add_export(CLI::App& app, Session& session) {
           "slam_toolbox")
       ->check(CLI::IsMember(export_formats()))
       ->capture_default_str();
-  verb->add_option("--out", options->out, "file to write instead of standard output");
+  add_output(*verb, "--out", options->out, "file to write instead of standard output");
   verb->add_option(
       "--into", options->into,
       "file of your own to change, with diff_drive or urdf: shown and asked before; the old one is "

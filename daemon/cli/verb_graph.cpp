@@ -131,8 +131,8 @@ void add_optimize(CLI::App& parent, Session& session) {
       parent, session, "optimize", "Move the vertices to where they agree best with the edges", optimize);
   verb->add_option("GRAPH", options->files, "g2o or TORO text; several files are read as one")->required();
   add_unpack_limit(*verb, options->unpack_limit);
-  verb->add_option("--out", options->out, "g2o file to write");
-  verb->add_option("--svg", options->picture, "picture to write: trajectory before and after, loops");
+  add_output(*verb, "--out", options->out, "g2o file to write");
+  add_output(*verb, "--svg", options->picture, "picture to write: trajectory before and after, loops");
   add_choice(*verb, "--start", options->solver.start, graph_starts(), "first guess to try first");
   add_choice(*verb, "--method", options->solver.method, graph_methods(), "how steps are taken");
   verb->add_option("--iterations", options->solver.max_iterations, "at most so many from one first guess")
@@ -151,8 +151,8 @@ void add_build(CLI::App& parent, Session& session) {
   const auto [verb, options] = add_verb(
       parent, session, "build", "Make a graph and a map of the scans and ticks of a recording", build);
   verb->add_option("RECORDING", options->recording, "in any form that solve reads")->required();
-  verb->add_option("--out", options->out, "g2o file to write: poses of the lidar at keyframes");
-  verb->add_option("--svg", options->picture, "picture to write: map, trajectory before and after, loops");
+  add_output(*verb, "--out", options->out, "g2o file to write: poses of the lidar at keyframes");
+  add_output(*verb, "--svg", options->picture, "picture to write: map, trajectory before and after, loops");
   add_reading_options(*verb, options->reading);
   verb->add_option("--distance", options->graph.spacing.distance, "m of travel from keyframe to keyframe")
       ->check(finite(0.01, 100.0))

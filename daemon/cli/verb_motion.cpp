@@ -251,7 +251,7 @@ void add_motions(CLI::App& app, Session& session) {
   all->add_flag("--one-drive", options->one_drive, "no second motion, whatever the first leaves open");
   all->add_flag("--apply", options->apply,
                 "try it, drive straight and spin again, and store it unless odometry is worse");
-  all->add_option("--out", options->file, "calibration file to write");
+  add_output(*all, "--out", options->file, "calibration file to write");
   constexpr const char* kReplaced = "the controller took the place of the one that these values are of";
   auto* write = add_action(app, session, options, "apply", "Write a calibration to the controller", apply);
   write->add_option("CALIBRATION", options->file)->required();

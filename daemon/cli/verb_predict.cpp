@@ -144,7 +144,7 @@ void add_predict(CLI::App& app, Session& session) {
       add_verb(app, session, "predict", "Dead reckoning from the ticks of a recording", predict_trajectory);
   verb->add_option("RECORDING", options->recording, "in any form that solve reads")->required();
   verb->add_option("--calibration", options->calibration, "calibration file, or \"nominal\"")->required();
-  verb->add_option("--trajectory", options->trajectory, "file to write, TUM format")->required();
+  add_output(*verb, "--trajectory", options->trajectory, "file to write, TUM format")->required();
   verb->add_flag("--live", options->live,
                  "each pose from the samples up to its own, as odomcalibd and libodomcalib have it");
   verb->add_option("--noise", options->noise,

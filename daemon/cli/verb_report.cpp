@@ -84,10 +84,10 @@ void add_report(CLI::App& app, Session& session) {
   const auto [verb, options] =
       add_verb(app, session, "report", "A calibration file as text, JSON or HTML", show_report);
   verb->add_option("CALIBRATION", options->calibration, "file that solve or calibrate wrote")->required();
-  verb->add_option("--html,--out", options->html, "HTML page to write");
-  verb->add_option("--sheet", options->sheet, "page to write for the mechanic: what was found where");
-  verb->add_option("--certificate", options->certificate,
-                   "page to write that can be filed; not of a refusal");
+  add_output(*verb, "--html,--out", options->html, "HTML page to write");
+  add_output(*verb, "--sheet", options->sheet, "page to write for the mechanic: what was found where");
+  add_output(*verb, "--certificate", options->certificate,
+             "page to write that can be filed; not of a refusal");
   verb->add_option("--history", options->history,
                    "what was written to the controller, for page and --verbose: output of history --json, or "
                    "the service's state folder; default: what the service here says");

@@ -141,10 +141,10 @@ void add_solve(CLI::App& app, Session& session) {
   verb->add_flag("--same-robot", options->same_robot, "recordings with different robot_id are of one robot");
   verb->add_flag("--same-lidar", options->same_lidar,
                  "lidars whose names alone differ from recording to recording are one");
-  verb->add_option("--out", options->out, "calibration file to write, also when refused");
-  verb->add_option("--report", options->report, "HTML report to write");
-  verb->add_option("--pairs", options->pairs,
-                   "CSV to write: each measured motion beside that of odometry, with its times");
+  add_output(*verb, "--out", options->out, "calibration file to write, also when refused");
+  add_output(*verb, "--report", options->report, "HTML report to write");
+  add_output(*verb, "--pairs", options->pairs,
+             "CSV to write: each measured motion beside that of odometry, with its times");
   verb->add_option("--rounds", options->cuts.rounds, "of the closed form, that cut outliers (4)")
       ->check(CLI::Range(0, 100));
   verb->add_option("--cut", options->cuts.drop_fraction,

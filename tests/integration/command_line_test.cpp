@@ -770,6 +770,21 @@ TEST_F(CommandLine, a_result_that_cannot_be_written_after_a_solve_is_printed) {
   EXPECT_EQ(json::parse(as_json.out, nullptr, false).value("verdict", ""), "refused") << as_json.out;
 }
 
+TEST_F(CommandLine, a_dash_is_standard_output_for_every_file_that_is_written) {
+  const Outcome predicted = ctl("predict drive.jsonl --calibration nominal --trajectory -");
+  EXPECT_EQ(std::count(predicted.out.begin(), predicted.out.end(), '\n'), 101) << predicted.out;
+  EXPECT_THAT(predicted.err, HasSubstr("101 poses, end x"));
+  const Outcome converted = ctl("convert drive.jsonl --out -");
+  EXPECT_EQ(std::count(converted.out.begin(), converted.out.end(), '\n'), 203) << converted.err;
+  EXPECT_THAT(ctl("export cal.json --what toml --out=-").out, HasSubstr("track_width = 0.4"));
+  EXPECT_THAT(ctl("report cal.json --html -").out, HasSubstr("<html"));
+  const Outcome solved = ctl("solve drive.jsonl --effects none --out -");
+  EXPECT_FALSE(json::parse(solved.out, nullptr, false).is_discarded()) << solved.out;
+  EXPECT_FALSE(exists("-"));
+  EXPECT_EQ(ctl("export cal.json --what toml --out ./-").status, 0);
+  EXPECT_TRUE(exists("-")) << "a file of this name can still be written";
+}
+
 class Completion : public CommandLine {
  protected:
   /// Completions that bash offers behind these words, the last of which is being typed.
