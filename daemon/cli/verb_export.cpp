@@ -75,6 +75,9 @@ Result<void> check_files(const ExportOptions& options) {
   if (!options.into.empty() && !goes_into_files(options.what))
     return Error{ErrorCode::usage, "--into takes diff_drive and urdf", "--what " + options.what,
                  "write it with --out"};
+  if (!options.link.empty() && (options.into.empty() || options.what != "urdf"))
+    return Error{ErrorCode::usage, "names a link of the URDF that --into changes", "--link",
+                 "leave it out, or give --what urdf --into FILE"};
   return check_outputs({{"--out", options.out}, {"--into", options.into}},
                        {{"the calibration", options.calibration}});
 }

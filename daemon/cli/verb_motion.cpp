@@ -207,7 +207,9 @@ Result<ordered_json> parsed_values(const std::vector<std::string>& assignments) 
         equals == std::string::npos ? std::nullopt : number_from<double>(text.substr(equals + 1));
     if (!value || equals == 0 || !std::isfinite(*value))
       return Error{ErrorCode::usage, "not NAME=VALUE with a value in m", text, "odomcalibctl params get"};
-    values[text.substr(0, equals)] = *value;
+    const std::string name = text.substr(0, equals);
+    if (values.contains(name)) return Error{ErrorCode::usage, name + " has two values", text, "give it one"};
+    values[name] = *value;
   }
   return values;
 }

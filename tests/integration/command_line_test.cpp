@@ -785,6 +785,18 @@ TEST_F(CommandLine, a_dash_is_standard_output_for_every_file_that_is_written) {
   EXPECT_TRUE(exists("-")) << "a file of this name can still be written";
 }
 
+TEST_F(CommandLine, a_parameter_has_one_value) {
+  const Outcome got = ctl("--socket nobody params set --yes track_width=0.39 track_width=0.4");
+  EXPECT_EQ(got.status, 2) << got.err;
+  EXPECT_THAT(got.err, HasSubstr("track_width has two values"));
+}
+
+TEST_F(CommandLine, a_link_is_of_the_urdf_that_changes) {
+  const Outcome got = ctl("export cal.json --what diff_drive --link laser");
+  EXPECT_EQ(got.status, 2) << got.out;
+  EXPECT_THAT(got.err, HasSubstr("--link"));
+}
+
 class Completion : public CommandLine {
  protected:
   /// Completions that bash offers behind these words, the last of which is being typed.
