@@ -27,6 +27,10 @@ struct Prospect {
   bool first_motion = false;  ///< nothing has moved this robot before
 };
 
+bool moves(const std::string& method) {
+  return method == "Straight" || method == "Spin" || method == "Calibrate" || method == "Check";
+}
+
 // Rule M11: somebody has looked at the robot. What a script was given for good, nobody has said for a robot
 // that has never moved: where there is somebody to ask, that one is asked.
 Result<void> ask(const Consent& given, const std::string& what, const Prospect& prospect) {
@@ -43,16 +47,15 @@ Result<void> ask(const Consent& given, const std::string& what, const Prospect& 
   std::cerr
       << prospect.drawing
       << (given.yes ? "This is the first motion of this robot: --yes is not enough. " : "") << what
-      << ": is the area clear and an emergency stop at hand? This program's obstacle stop replaces neither"
-      << " a safety scanner nor an emergency stop. " << besides << "Type yes to go on: " << std::flush;
+      << (moves(what)
+              ? ": is the area clear and an emergency stop at hand? This program's obstacle stop replaces "
+                "neither a safety scanner nor an emergency stop. "
+              : " writes to the controller. Nothing moves; the axes have no torque meanwhile. ")
+      << besides << "Type yes to go on: " << std::flush;
   std::string answer;
   std::getline(std::cin, answer);
   if (answer == "yes") return {};
   return Error{ErrorCode::cancelled, "no consent", what, ""};
-}
-
-bool moves(const std::string& method) {
-  return method == "Straight" || method == "Spin" || method == "Calibrate" || method == "Check";
 }
 
 std::string unseen_question(const ordered_json& plan) {

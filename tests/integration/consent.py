@@ -84,6 +84,7 @@ def main(programs, profile):
         with open(robot.path("cal.json"), "w", encoding="utf-8") as file:
             json.dump(CALIBRATION, file)
         seen, status = on_terminal(robot, ["apply", robot.path("cal.json")], "no", [QUESTION])
+        expect("Nothing moves" in seen and "area clear" not in seen, "a write is asked about as a motion:\n" + seen)
         expect('"robot-B"' in seen and "Is it of this robot?" in seen, "whose robot is not asked:\n" + seen)
         expect(status == CANCELLED, "status %d after no" % status)
         done = robot.ctl("apply", robot.path("cal.json"), "--yes")
