@@ -247,6 +247,8 @@ std::vector<std::string> not_held(const Calibration& calibration, const std::str
     const std::string value = placement.parameter.empty() ? "" : fmt::format(" = {:.4g} {}", q.value, q.unit);
     sentences.push_back(fmt::format("not held here: {}{}", name, value));
   }
+  for (const std::string& name : calib::odometry::unknown_effects(calibration))
+    sentences.push_back("not held here: " + name + ", an effect that this program does not know");
   const auto left = calibration.parameter(BaseQuantity::left_wheel_diameter),
              right = calibration.parameter(BaseQuantity::right_wheel_diameter);
   if (what == "ros_arduino" && left && right && *left != *right)

@@ -409,6 +409,9 @@ TEST_F(CommandLine, an_effect_that_this_program_does_not_know_is_told) {
   EXPECT_EQ(got.status, 0) << got.err;
   EXPECT_THAT(got.err, AllOf(HasSubstr("warning"), HasSubstr("moon_phase")));
   EXPECT_EQ(ctl("predict drive.jsonl --calibration cal.json --trajectory out").err, "");
+  const auto exported = ctl("export foreign.json --what diff_drive");
+  EXPECT_THAT(exported.err, AllOf(HasSubstr("warning"), HasSubstr("moon_phase")));
+  EXPECT_THAT(exported.out, HasSubstr("# not held here: moon_phase"));
 }
 
 // Escape sequences of both kinds, a title, a bell: what a terminal would obey.
