@@ -75,12 +75,15 @@ std::string help_command(const CLI::App& app) {
   return "see " + command + " --help";
 }
 
-/// The option parser lists what it would take without a space, which no line could be broken at.
+/// The option parser lists what it would take without a space, which no line could be broken at. What the
+/// user typed stands in quotes, and stays.
 std::string with_spaces(const std::string& list) {
   std::string out;
+  bool quoted = false;
   for (std::size_t i = 0; i < list.size(); ++i) {
     out += list[i];
-    if (list[i] == ',' && i + 1 < list.size() && list[i + 1] != ' ') out += ' ';
+    if (list[i] == '"') quoted = !quoted;
+    if (list[i] == ',' && !quoted && i + 1 < list.size() && list[i + 1] != ' ') out += ' ';
   }
   return out;
 }

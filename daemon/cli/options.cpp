@@ -75,6 +75,16 @@ CLI::Validator finite(double least, double most) {
   return {problem, bounded ? fmt::format("in [{} - {}]", least, most) : ""};
 }
 
+CLI::Validator whole(int least, int most) {
+  const auto problem = [=](std::string& text) {
+    int value = 0;
+    const bool good = CLI::detail::lexical_cast(text, value) && value >= least && value <= most;
+    return good ? std::string()
+                : fmt::format("\"{}\" is not a whole number from {} to {}", text, least, most);
+  };
+  return {problem, fmt::format("in [{} - {}]", least, most)};
+}
+
 CLI::Option* add_output(CLI::App& verb, const std::string& names, std::string& path,
                         const std::string& help) {
   return verb.add_option(names, path, help)->transform([](const std::string& given) {

@@ -30,6 +30,9 @@ std::pair<CLI::App*, std::shared_ptr<Options>> add_verb(CLI::App& parent, Sessio
 CLI::Validator finite(double least = std::numeric_limits<double>::lowest(),
                       double most = std::numeric_limits<double>::max());
 
+/// Takes whole numbers from `least` to `most`.
+CLI::Validator whole(int least, int most);
+
 /// An option that names a file to write, alike for every verb: "-" is the standard output, as /dev/stdout is.
 /// @param path outlives the parsing
 CLI::Option* add_output(CLI::App& verb, const std::string& names, std::string& path, const std::string& help);

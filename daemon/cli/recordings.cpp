@@ -5,6 +5,7 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 
+#include "daemon/cli/options.hpp"
 #include "daemon/cli/output.hpp"
 #include "daemon/config/robot_file.hpp"
 #include "proto/visible_text.hpp"
@@ -82,7 +83,7 @@ void add_unpack_limit(CLI::App& verb, double& limit) {
   verb.add_option("--unpack-limit", limit,
                   "MiB that a packed file may unpack to, where it can be trusted (256, JSON Lines 1024, and "
                   "less for small files)")
-      ->check(CLI::Range(1.0, 1e6));
+      ->check(finite(1.0, 1e6));
 }
 
 UnpackLimit unpack_limit_of(double mebibytes) {

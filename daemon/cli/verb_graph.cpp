@@ -136,7 +136,7 @@ void add_optimize(CLI::App& parent, Session& session) {
   add_choice(*verb, "--start", options->solver.start, graph_starts(), "first guess to try first");
   add_choice(*verb, "--method", options->solver.method, graph_methods(), "how steps are taken");
   verb->add_option("--iterations", options->solver.max_iterations, "at most so many from one first guess")
-      ->check(CLI::Range(1, 100000))
+      ->check(whole(1, 100000))
       ->capture_default_str();
 }
 

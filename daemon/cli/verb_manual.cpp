@@ -279,7 +279,7 @@ CLI::Option* add_common(CLI::App& verb, const std::shared_ptr<ManualOptions>& op
   add_consent(verb, options->consent);
   auto* repeat =
       verb.add_option("--repeat", options->repeat, "times at most; fewer when more would not make it better")
-          ->check(CLI::Range(1, routines::settings::kMostRepeats))
+          ->check(whole(1, routines::settings::kMostRepeats))
           ->capture_default_str();
   add_output(verb, "--out", options->out, "calibration file of the lengths proposed, for apply");
   return verb.add_option("--of", options->of, "nothing moves: what --json of an earlier drive printed")

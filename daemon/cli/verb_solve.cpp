@@ -146,7 +146,7 @@ void add_solve(CLI::App& app, Session& session) {
   add_output(*verb, "--pairs", options->pairs,
              "CSV to write: each measured motion beside that of odometry, with its times");
   verb->add_option("--rounds", options->cuts.rounds, "of the closed form, that cut outliers (4)")
-      ->check(CLI::Range(0, 100));
+      ->check(whole(0, 100));
   verb->add_option("--cut", options->cuts.drop_fraction,
                    "share that each round of the closed form cuts (0.01)")
       ->check(finite(0.0, 0.5));

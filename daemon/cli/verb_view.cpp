@@ -217,7 +217,7 @@ void add_view(CLI::App& app, Session& session) {
   const auto [verb, options] = add_verb(
       app, session, "view", "Page on this machine that shows scan, paths and progress, until Ctrl-C", view);
   verb->add_option("--port", options->port, "on 127.0.0.1, 0: any that is free")
-      ->check(CLI::Range(0, 65535))
+      ->check(whole(0, 65535))
       ->capture_default_str();
   verb->add_option("--duration", options->duration, "s, 0: until Ctrl-C")->check(finite(0.0, 86400.0));
 }

@@ -562,6 +562,9 @@ TEST_F(CommandLine, predict_and_convert_say_what_they_go_on_without) {
 TEST_F(CommandLine, S3_11_rounds_and_cut_of_the_closed_form_have_limits) {
   for (const std::string wrong : {"--rounds -1", "--rounds 1000", "--cut 0.9", "--cut nan"})
     EXPECT_EQ(ctl("solve drive.jsonl " + wrong).status, 2) << wrong;
+  EXPECT_THAT(ctl("solve drive.jsonl --rounds 1e1").err,
+              HasSubstr("\"1e1\" is not a whole number from 0 to 100"));
+  EXPECT_THAT(ctl("solve drive.jsonl --cut 1,5").err, HasSubstr("\"1,5\" is not a number"));
 }
 
 // A FIFO that nobody writes holds the program up while it reads.
