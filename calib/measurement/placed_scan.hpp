@@ -53,8 +53,10 @@ PlacedScan mean_of(std::span<const PlacedScan> places, double time, const PathOf
 using settings::kMeanReach;
 
 /// Mean of all scans within `reach` of a time, s, if there are some. What the wheels do wrong before and
-/// after cancels, and what they do right is no noise: for the error of a model it is to be asked with its own
-/// path, and for that of a motion no scan may stand for both ends of it.
+/// after cancels at a steady speed. In an acceleration some of it stays, and the mean leans towards the
+/// wheels that carry it: the error of one model is to be measured with other wheels than its own, that of two
+/// which are compared with the own ones of each, so that both lean alike. For a motion no scan may stand for
+/// both ends of it.
 /// @param places in time order
 std::optional<PlacedScan> mean_place(std::span<const PlacedScan> places, double time,
                                      const PathOfWheels& wheels, double reach = kMeanReach);

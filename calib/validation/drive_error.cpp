@@ -19,27 +19,54 @@ constexpr const char* kOpenLoopPosition = "open_loop_10s_position";
 
 constexpr unsigned kDriveErrorSeed = 20010823;
 
-/// Predicted minus measured motion of each evaluation window, in the base's frame at its begin.
-std::vector<math::Pose> errors_of(std::span<const measurement::FitData> data,
-                                  const std::vector<EvaluationWindow>& windows,
-                                  const std::vector<Eigen::VectorXd>& parameters,
-                                  const vehicle::EffectList& effects) {
-  std::vector<math::Pose> errors(windows.size());
+/// The trajectory that a fold's parameters make of a recording answers for each window in it.
+template <typename Ask>
+std::vector<math::Pose> of_each_window(std::span<const measurement::FitData> data,
+                                       const std::vector<EvaluationWindow>& windows,
+                                       const std::vector<Eigen::VectorXd>& parameters,
+                                       const vehicle::EffectList& effects, const Ask& ask) {
+  std::vector<math::Pose> answers(windows.size());
   for (std::size_t fold = 0; fold < kFolds; ++fold) {
     for (std::size_t d = 0; d < data.size(); ++d) {
       const auto trajectory = data[d].model->trajectory(vehicle::as_span(parameters[fold]), effects);
-      const measurement::PathOfWheels wheels = measurement::path_of_wheels(trajectory);
-      const math::Pose base_seen_from_sensor =
-          inverse(vehicle::to_base(vehicle::as_span(parameters[fold])).mount);
-      for (std::size_t k = 0; k < windows.size(); ++k) {
-        const EvaluationWindow& s = windows[k];
-        if (s.fold != fold || s.recording != d) continue;
-        const math::Pose told = between(trajectory.at(s.interval.begin), trajectory.at(s.interval.end));
-        const math::Pose motion = conjugate(measured_motion(s, data[d], wheels), base_seen_from_sensor);
-        errors[k] = {told.x - motion.x, told.y - motion.y, math::wrap_angle(told.yaw - motion.yaw)};
-      }
+      for (std::size_t k = 0; k < windows.size(); ++k)
+        if (windows[k].fold == fold && windows[k].recording == d) answers[k] = ask(windows[k], trajectory);
     }
   }
+  return answers;
+}
+
+/// Motion of the base over each evaluation window by the reference, in the base's frame at its begin. Its
+/// places are carried to the ends by wheels: where a stretch begins or ends in an acceleration, wheels that
+/// are wrong shift both ends by some per cent of their own error, so these must not be the ones that are
+/// judged.
+std::vector<math::Pose> measured_motions(std::span<const measurement::FitData> data,
+                                         const std::vector<EvaluationWindow>& windows,
+                                         const std::vector<Eigen::VectorXd>& parameters,
+                                         const vehicle::EffectList& effects) {
+  return of_each_window(data, windows, parameters, effects,
+                        [&](const EvaluationWindow& window, const vehicle::Trajectory& trajectory) {
+                          const math::Pose mount = vehicle::to_base(trajectory.parameters()).mount;
+                          return conjugate(measured_motion(window, data[window.recording],
+                                                           measurement::path_of_wheels(trajectory)),
+                                           inverse(mount));
+                        });
+}
+
+/// Predicted minus measured motion of each evaluation window, in the base's frame at its begin.
+std::vector<math::Pose> errors_of(std::span<const measurement::FitData> data,
+                                  const std::vector<EvaluationWindow>& windows,
+                                  const std::vector<math::Pose>& measured,
+                                  const std::vector<Eigen::VectorXd>& parameters,
+                                  const vehicle::EffectList& effects) {
+  std::vector<math::Pose> errors = of_each_window(
+      data, windows, parameters, effects,
+      [](const EvaluationWindow& window, const vehicle::Trajectory& trajectory) {
+        return between(trajectory.at(window.interval.begin), trajectory.at(window.interval.end));
+      });
+  for (std::size_t k = 0; k < errors.size(); ++k)
+    errors[k] = {errors[k].x - measured[k].x, errors[k].y - measured[k].y,
+                 math::wrap_angle(errors[k].yaw - measured[k].yaw)};
   return errors;
 }
 
@@ -117,9 +144,10 @@ class Judge {
     const auto windows =
         find_windows(kind, data_, folds_, *full_.fit, measured_pairs(data_, trusted_pairs(*full_.fit)));
     if (windows.size() < settings::kFewestOfAKind) return;
-    const auto before = errors(windows, nominal_parameters_);
-    const auto geometry = errors(windows, geometry_parameters_);
-    const auto after = errors(windows, full_parameters_);
+    const auto measured = measured_motions(data_, windows, full_parameters_, full_.effects);
+    const auto before = errors(windows, measured, nominal_parameters_);
+    const auto geometry = errors(windows, measured, geometry_parameters_);
+    const auto after = errors(windows, measured, full_parameters_);
     const auto figure = [&](Part part, const std::vector<math::Pose>& e) {
       return e.empty() ? std::nullopt : std::optional(bounded(part, windows, e));
     };
@@ -132,8 +160,9 @@ class Judge {
     const auto windows =
         find_windows_of_way(way, data_, folds_, *full_.fit, measured_pairs(data_, trusted_pairs(*full_.fit)));
     if (windows.size() < settings::kFewestOfAKind) return std::nullopt;
+    const auto measured = measured_motions(data_, windows, full_parameters_, full_.effects);
     const auto figure = [&](const std::vector<Eigen::VectorXd>& parameters) {
-      const auto all = errors(windows, parameters);
+      const auto all = errors(windows, measured, parameters);
       return all.empty() ? std::nullopt : std::optional(rms_position(all));
     };
     return ErrorGrowth{mean_amount(windows), windows.size(), figure(nominal_parameters_),
@@ -143,9 +172,10 @@ class Judge {
  private:
   /// Empty without parameters.
   [[nodiscard]] std::vector<math::Pose> errors(const std::vector<EvaluationWindow>& windows,
+                                               const std::vector<math::Pose>& measured,
                                                const std::vector<Eigen::VectorXd>& parameters) const {
     if (parameters.empty()) return {};
-    return errors_of(data_, windows, parameters, full_.effects);
+    return errors_of(data_, windows, measured, parameters, full_.effects);
   }
 
   [[nodiscard]] std::vector<Eigen::VectorXd> by_fold(const JudgedModel& model) const {

@@ -22,7 +22,8 @@ struct JudgedModel {
 /// Each is sqrt(sum e^2 / sum a^2) over windows with error e and amount a (metres, turns, 1): a systematic
 /// error of a metre counts the same whether the robot drove it in one piece or in three. Intervals: bootstrap
 /// over blocks of half a minute, 1000 draws, fixed seed. Figures without at least four windows are left
-/// out.
+/// out. All three are held against the same motions: places that the wheels of `full`, fitted without the
+/// window's fold, carry to its ends.
 /// @param nominal wheel radii and track width before calibration; zero: not known, no "before"
 /// @param geometry six parameters alone; null when `full` has no effects
 /// @param full gives mount, delay of the clocks, noise and outliers for all three

@@ -26,7 +26,7 @@ struct EvaluationWindow {
 
 /// Motion of the sensor over a window by the reference, in its frame at the begin: places in a map, where
 /// there are any, or else the chain.
-/// @param wheels of the model that is judged by it (see mean_place)
+/// @param wheels carry the places to the ends of the window (see mean_place)
 math::Pose measured_motion(const EvaluationWindow& window, const measurement::FitData& data,
                            const measurement::PathOfWheels& wheels);
 

@@ -214,6 +214,31 @@ TEST(DriveErrors, are_no_smaller_when_held_against_places) {
   EXPECT_NEAR(by_places.before->value, by_matches.before->value, 0.02 * by_matches.before->value);
 }
 
+/// Where a sensor that moves as `truth` says is ten times a second.
+std::vector<measurement::PlacedScan> places_of(const vehicle::DriveModel& model,
+                                               const wheels::BaseParameters& truth) {
+  const Eigen::VectorXd parameters = vehicle::to_vector(truth);
+  const vehicle::Trajectory trajectory = model.trajectory(vehicle::as_span(parameters), {});
+  std::vector<measurement::PlacedScan> places;
+  for (double t = 0.0; t < 419.0; t += 0.1)
+    places.push_back({t, compose(trajectory.at(t), truth.mount), 1e-8 * Eigen::Matrix3d::Identity()});
+  return places;
+}
+
+// Stretches begin and end with a ramp, so that scans on one side of an end were taken at rest.
+TEST(DriveErrors, are_measured_by_a_reference_that_leans_to_no_wheels_that_are_judged) {
+  const auto world = make_world({}, {}, 11);
+  const estimation::FitResult fit = fitted(*world, {});
+  world->data.front().places = places_of(world->model, kTruth);
+  const auto errors = validation::drive_errors(world->data, kNominal, nullptr, {&fit, none_fixed({}), {}});
+
+  const double length = kNominal.left_radius / (0.5 * (kTruth.left_radius + kTruth.right_radius));
+  const double metre = 1.0 - length;
+  EXPECT_NEAR(named(errors, "straight_metre_length").before->value, metre, 0.003 * metre);
+  const double turn = 2.0 * M_PI * std::abs(length * kTruth.track_width / kNominal.track_width - 1.0);
+  EXPECT_NEAR(named(errors, "full_turn_heading").before->value, turn, 0.001 * turn);
+}
+
 TEST(DriveErrors, too_short_a_recording_gives_no_figures) {
   const auto world = make_world({}, {}, 13);
   const estimation::FitResult fit = fitted(*world, {});
