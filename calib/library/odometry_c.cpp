@@ -13,7 +13,9 @@
 
 #include "calib/library/drive.hpp"
 #include "calib/odometry/predict.hpp"
+#include "calib/terms/catalogue.hpp"
 #include "proto/base_quantities.hpp"
+#include "proto/calibration/value_check.hpp"
 
 #ifndef ODOMCALIB_LIBRARY_VERSION
 #define ODOMCALIB_LIBRARY_VERSION "unknown"
@@ -61,6 +63,8 @@ Refusal refusal_of(const Error& error) {
 std::optional<Refusal> unusable(const Calibration& calibration, const std::string& where) {
   if (const auto member = non_finite_value(calibration))
     return Refusal{ODOMCALIB_NOT_A_CALIBRATION, where + ": \"" + *member + "\" has no finite value"};
+  if (const auto wrong = wrong_value(calibration, calib::terms::unit_of_effect, where))
+    return Refusal{ODOMCALIB_NOT_A_CALIBRATION, wrong->text()};
   for (const BaseQuantity length : kDriveLengths)
     if (!(calibration.parameter(length).value_or(0.0) > 0.0))
       return Refusal{ODOMCALIB_NOT_A_CALIBRATION,

@@ -108,4 +108,14 @@ const ParameterMeaning* meaning_of(std::string_view effect, std::string_view par
   return of_wheels ? of_wheels : kMeaningAmong(lidar_catalogue(false), effect, parameter);
 }
 
+std::optional<std::string> unit_of_effect(const std::string& effect, const std::string& parameter) {
+  for (const auto& of_wheels : find_effects(effect))
+    for (const vehicle::EffectParameter& own : of_wheels->parameters())
+      if (own.name == parameter) return own.unit;
+  if (const LidarEffectPtr of_lidar = find_lidar_effect(effect))
+    for (const LidarParameter& own : of_lidar->parameters())
+      if (own.name == parameter) return own.unit;
+  return std::nullopt;
+}
+
 }  // namespace odomcalib::calib::terms

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -43,5 +44,9 @@ using vehicle::ParameterMeaning;
 /// The meaning that the row of the effect states; of wheels or of the lidar.
 /// @return nullptr where there is none, as for a parameter of a file from another version
 const ParameterMeaning* meaning_of(std::string_view effect, std::string_view parameter);
+
+/// The unit that the row of the effect states, of wheels or of the lidar.
+/// @return nullopt where there is none, as for a parameter of a file from another version
+std::optional<std::string> unit_of_effect(const std::string& effect, const std::string& parameter);
 
 }  // namespace odomcalib::calib::terms

@@ -4,7 +4,9 @@
 #include <array>
 #include <cstddef>
 
+#include "calib/terms/catalogue.hpp"
 #include "proto/base_quantities.hpp"
+#include "proto/calibration/value_check.hpp"
 #include "proto/recording/wheel_motion.hpp"
 
 namespace odomcalib::cli {
@@ -18,8 +20,15 @@ constexpr std::array<double Dimensions::*, kDriveLengths.size()> kDimensionMembe
 
 }  // namespace
 
-Result<Calibration> read_finite_calibration(const std::string& path) {
+Result<Calibration> read_plausible_calibration(const std::string& path) {
   auto calibration = read_calibration(path);
+  if (!calibration) return calibration;
+  if (auto wrong = wrong_value(calibration.value(), calib::terms::unit_of_effect, path)) return *wrong;
+  return calibration;
+}
+
+Result<Calibration> read_finite_calibration(const std::string& path) {
+  auto calibration = read_plausible_calibration(path);
   if (!calibration) return calibration;
   if (const auto member = non_finite_value(calibration.value()))
     return Error{ErrorCode::format, "\"" + *member + "\" has no finite value", path, kRemedy};

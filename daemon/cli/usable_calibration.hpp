@@ -9,7 +9,9 @@
 
 namespace odomcalib::cli {
 
-/// A calibration whose values are all finite. Error: io, format.
+/// A calibration whose values are what their units say (wrong_value). Error: io, format, refused.
+Result<Calibration> read_plausible_calibration(const std::string& path);
+/// The same of one whose values are all finite.
 Result<Calibration> read_finite_calibration(const std::string& path);
 
 /// Wheel diameters and track width, as they are needed to drive by. Error: refused, when the file says so

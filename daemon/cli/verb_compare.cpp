@@ -5,6 +5,7 @@
 #include "daemon/cli/comparison_document.hpp"
 #include "daemon/cli/exit_codes.hpp"
 #include "daemon/cli/options.hpp"
+#include "daemon/cli/usable_calibration.hpp"
 #include "proto/file_bytes.hpp"
 
 namespace odomcalib::cli {
@@ -29,7 +30,7 @@ Result<ComparisonOptions> options_of(const CompareArguments& arguments) {
 Result<std::vector<ComparedFile>> read_calibrations(const std::vector<std::string>& paths) {
   std::vector<ComparedFile> files;
   for (const std::string& path : paths) {
-    auto calibration = read_calibration(path);
+    auto calibration = read_plausible_calibration(path);
     if (!calibration) return calibration.error();
     files.push_back({path, std::move(calibration).value()});
   }

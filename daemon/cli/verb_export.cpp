@@ -85,8 +85,8 @@ Result<void> check_files(const ExportOptions& options) {
 int export_calibration(const ExportOptions& options, const Session& session) {
   if (const auto files = check_files(options); !files) return report_error(files.error(), session.json);
   const bool configuration = is_configuration(options.what);
-  const auto calibration =
-      configuration ? read_finite_calibration(options.calibration) : read_calibration(options.calibration);
+  const auto calibration = configuration ? read_finite_calibration(options.calibration)
+                                         : read_plausible_calibration(options.calibration);
   if (!calibration) return report_error(calibration.error(), session.json);
   const auto text = exported(calibration.value(), options.what, options.calibration);
   if (!text) return report_error(text.error(), session.json);

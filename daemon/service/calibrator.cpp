@@ -9,6 +9,7 @@
 #include "calib/odometry/odometry.hpp"
 #include "calib/report/next_test.hpp"
 #include "calib/solve.hpp"
+#include "calib/terms/catalogue.hpp"
 #include "calib/terms/request.hpp"
 #include "daemon/service/dead_reckoning.hpp"
 #include "daemon/service/settings.hpp"
@@ -90,6 +91,7 @@ Calibrator make_calibrator() {
     auto state = std::make_shared<calib::odometry::Odometry>(calibration);
     return [state](const TickSample& sample) { return state->update(sample); };
   };
+  calibrator.unit_of_effect = calib::terms::unit_of_effect;
   calibrator.host_values = host_values;
   calibrator.next_manoeuvre = next_manoeuvre;
   calibrator.match = match;

@@ -10,6 +10,7 @@
 
 #include "daemon/routines/motion.hpp"
 #include "proto/calibration/calibration.hpp"
+#include "proto/calibration/value_check.hpp"
 #include "proto/recording/recording.hpp"
 #include "proto/result.hpp"
 
@@ -41,6 +42,8 @@ struct Calibrator {
   /// Why effects of these names cannot be fitted. May be empty: any name is taken then.
   std::function<std::optional<Error>(const std::vector<std::string>&)> wrong_effects;
   std::function<Odometry(const Calibration&)> odometry;
+  /// May be empty: units of effects are not looked at then.
+  UnitOfEffect unit_of_effect;
   /// May be empty: no progress is reported then.
   std::function<std::vector<HostValue>(const Calibration&)> host_values;
   std::function<std::optional<NextManoeuvre>(const Calibration&)> next_manoeuvre;

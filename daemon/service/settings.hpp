@@ -59,9 +59,8 @@ inline constexpr double kLidarFirstRetry_s = 0.2, kLidarLastRetry_s = 0.8, kLida
 inline constexpr double kLidarWatch_s = 2.0;
 /// Share of a length; one that is further from what is known of it is another robot's. Chosen.
 inline constexpr double kPlausibleLength = 0.15;
-/// m and rad beyond which no dimension of a robot is one, and m or rad of deviation with which the lidar's
-/// place is not known at all. Chosen.
-inline constexpr double kMostLength_m = 10.0, kMostAngle_rad = 6.3, kMostLidarStd = 10.0;
+/// m or rad of deviation with which the lidar's place is not known at all. Chosen.
+inline constexpr double kMostLidarStd = 10.0;
 /// Value or deviation of an effect's parameter, in its own unit, beyond which it is none. Chosen: the largest
 /// bound of an effect is 1e6 s.
 inline constexpr double kMostOfEffect = 1e7;

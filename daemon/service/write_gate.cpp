@@ -66,38 +66,37 @@ Error absurd_member(const std::string& path, const std::string& why) {
           "solve a recording of this robot again"};
 }
 
-std::optional<Error> absurd_quantity(const std::string& path, const Quantity& quantity, const char* unit,
-                                     double most, double most_std) {
-  if (quantity.unit.empty()) return absurd_member(path + ".unit", "is missing");
-  if (unit != nullptr && quantity.unit != unit)
-    return absurd_member(path + ".unit", fmt::format("is \"{}\", not \"{}\"", quantity.unit, unit));
+std::optional<Error> absurd_quantity(const std::string& path, const Quantity& quantity, double most_std) {
   if (!std::isfinite(quantity.value)) return absurd_member(path + ".value", "is no finite number");
-  if (std::abs(quantity.value) > most)
-    return absurd_member(path + ".value",
-                         fmt::format("is {}: more than {} {}", quantity.value, most, quantity.unit));
   if (!(quantity.std <= most_std))
     return absurd_member(path + ".std", fmt::format("is {}: with more than {:.3g} {} the value says nothing",
                                                     quantity.std, most_std, quantity.unit));
   return std::nullopt;
 }
 
+std::optional<Error> absurd_parameter_of_effect(const std::string& path, const Quantity& quantity) {
+  constexpr double kMost = service::settings::kMostOfEffect;
+  if (std::abs(quantity.value) > kMost)
+    return absurd_member(path + ".value",
+                         fmt::format("is {}: more than {} {}", quantity.value, kMost, quantity.unit));
+  return absurd_quantity(path, quantity, kMost);
+}
+
 }  // namespace
 
-std::optional<Error> absurd(const Calibration& calibration, const NominalLengths& nominal) {
+std::optional<Error> absurd(const Calibration& calibration, const NominalLengths& nominal,
+                            const UnitOfEffect& unit_of_effect) {
   namespace settings = service::settings;
+  if (auto wrong = wrong_value(calibration, unit_of_effect, "calibration")) return wrong;
   for (const auto& [name, quantity] : calibration.parameters) {
-    const bool angle = is_name_of(name, BaseQuantity::lidar_yaw);
     const auto length = nominal.values.find(name);
     const double known = length != nominal.values.end() ? length->second : 0.0;
-    const double most = angle ? settings::kMostAngle_rad : settings::kMostLength_m;
     const double most_std = known > 0.0 ? settings::kPlausibleLength * known : settings::kMostLidarStd;
-    if (auto wrong = absurd_quantity("parameters." + name, quantity, angle ? "rad" : "m", most, most_std))
-      return wrong;
+    if (auto wrong = absurd_quantity("parameters." + name, quantity, most_std)) return wrong;
   }
   for (const EffectResult& effect : calibration.effects)
     for (const auto& [name, quantity] : effect.parameters)
-      if (auto wrong = absurd_quantity("effects." + effect.name + ".parameters." + name, quantity, nullptr,
-                                       settings::kMostOfEffect, settings::kMostOfEffect))
+      if (auto wrong = absurd_parameter_of_effect("effects." + effect.name + ".parameters." + name, quantity))
         return wrong;
   return std::nullopt;
 }

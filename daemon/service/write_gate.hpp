@@ -8,6 +8,7 @@
 #include "daemon/service/parts/drive.hpp"
 #include "daemon/service/parts/write_back.hpp"
 #include "proto/calibration/calibration.hpp"
+#include "proto/calibration/value_check.hpp"
 
 namespace odomcalib {
 
@@ -31,7 +32,9 @@ std::optional<Error> implausible(const ParameterMap& values, const NominalLength
 
 /// The first parameter of a calibration that no controller and no host may be given, by its path, and why: a
 /// unit that is missing or another one, a value or a deviation that is no number or beyond what a robot has.
-std::optional<Error> absurd(const Calibration& calibration, const NominalLengths& nominal);
+/// @param unit_of_effect see wrong_value()
+std::optional<Error> absurd(const Calibration& calibration, const NominalLengths& nominal,
+                            const UnitOfEffect& unit_of_effect);
 
 /// Lengths in force, by the names of the parameters.
 ParameterMap present_lengths(const RobotDescription& robot);

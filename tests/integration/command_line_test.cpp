@@ -261,6 +261,28 @@ TEST_F(CommandLine, values_that_are_no_numbers_are_refused_by_name_where_they_ar
   EXPECT_FALSE(exists("out"));
 }
 
+TEST_F(CommandLine, values_in_another_unit_are_refused_by_name_by_all_who_read_them) {
+  auto in_mm = calibration();
+  in_mm.parameters.back().second = {400.0, 0.1, "mm"};
+  save("mm.json", in_mm);
+  auto in_degrees = calibration();
+  in_degrees.effects.push_back({"backlash", {{"left_play", {3.4, 0.1, "deg"}}}, {}, {}, "host"});
+  save("deg.json", in_degrees);
+  for (const auto& [file, member] : {std::pair("mm.json", "parameters.track_width.unit"),
+                                     std::pair("deg.json", "effects.backlash.parameters.left_play.unit")}) {
+    const std::string name = file;
+    for (const std::string& call :
+         {"predict drive.jsonl --calibration " + name + " --trajectory out", "report " + name,
+          "export " + name + " --what diff_drive", "export " + name, "compare cal.json " + name}) {
+      const auto got = ctl(call);
+      EXPECT_EQ(got.status, 3) << call << got.out;
+      EXPECT_THAT(got.err, AllOf(HasSubstr(name), HasSubstr(member), HasSubstr("state value and std in")))
+          << call;
+    }
+  }
+  EXPECT_FALSE(exists("out"));
+}
+
 constexpr const char* kOwnFile = "a:\n  wheel_separation: 0.41  # m\n  wheel_radius: 0.075\n";
 constexpr const char* kOwnFileAfter = "a:\n  wheel_separation: 0.4  # m\n  wheel_radius: 0.075\n";
 constexpr const char* kInto = "export cal.json --what diff_drive --into c.yaml";

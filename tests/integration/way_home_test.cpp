@@ -24,6 +24,9 @@ class WayHome : public ServiceLoop {
       const double share = 1.0 - off_;
       return std::optional(routines::Pose{share * guess.x, share * guess.y, share * guess.yaw});
     };
+    functions.unit_of_effect = [](const std::string& effect, const std::string&) {
+      return effect == "time_offset" ? std::optional<std::string>("s") : std::nullopt;
+    };
     return functions;
   }
   EventLog log() override {
@@ -399,12 +402,12 @@ TEST_F(WayHome, without_a_name_the_daemon_says_so_and_asks_once) {
 
 TEST_F(WayHome, absurd_calibrations_are_refused_with_the_member_by_name) {
   const std::vector<std::pair<const char*, json>> kAbsurd = {
-      {"/parameters/track_width/unit", "km"},          {"/parameters/track_width/unit", ""},
-      {"/parameters/track_width/unit", nullptr},       {"/parameters/left_wheel_diameter/std", 1e9},
+      {"/parameters/track_width/unit", "km"},      {"/parameters/track_width/unit", ""},
+      {"/parameters/track_width/unit", nullptr},   {"/parameters/left_wheel_diameter/std", 1e9},
       {"/parameters/track_width/std", 0.0601},  // 15 % are 60 mm
-      {"/parameters/track_width/value", nullptr},      {"/effects/0/parameters/offset/unit", nullptr},
-      {"/effects/0/parameters/offset/value", nullptr}, {"/effects/0/parameters/offset/value", 1e9},
-      {"/effects/0/parameters/offset/std", 1e9}};
+      {"/parameters/track_width/value", nullptr},  {"/effects/0/parameters/offset/unit", nullptr},
+      {"/effects/0/parameters/offset/unit", "ms"}, {"/effects/0/parameters/offset/value", nullptr},
+      {"/effects/0/parameters/offset/value", 1e9}, {"/effects/0/parameters/offset/std", 1e9}};
   for (const auto& [pointer, value] : kAbsurd) {
     json body = calibration();
     body[json::json_pointer(pointer)] = value;

@@ -132,7 +132,9 @@ Result<Wish> wish_of(Calibration calibration, const RobotParts& parts, bool repl
   if (auto wrong = of_another_robot(calibration, robot)) return *wrong;
   if (auto wrong = of_another_controller(calibration, device_of(parts.drive.controller()), replaced))
     return *wrong;
-  if (auto wrong = absurd(calibration, nominal_lengths(parts.drive, parts.config))) return *wrong;
+  if (auto wrong =
+          absurd(calibration, nominal_lengths(parts.drive, parts.config), parts.calibrator.unit_of_effect))
+    return *wrong;
   Wish wish;
   if (robot.empty()) wish.asks.push_back(whose_robot(calibration));
   for (const BaseQuantity length : kDriveLengths)

@@ -8,6 +8,7 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
+#include "proto/calibration/value_check.hpp"
 #include "tests/value_of.hpp"
 
 namespace odomcalib::calibration_test {
@@ -193,6 +194,52 @@ TEST(CalibrationFile, names_the_first_value_that_is_no_number) {
   EXPECT_EQ(non_finite_value(calibration), "effects.carpet.p_x");
   calibration.parameters.front().second.value = INFINITY;
   EXPECT_EQ(non_finite_value(calibration), "parameters." + calibration.parameters.front().first);
+}
+
+std::string wrong_value_of(const Calibration& calibration) {
+  const auto wrong = wrong_value(calibration, nullptr, "cal.json");
+  return wrong ? wrong->text() : "";
+}
+
+TEST(WrongValue, is_a_base_parameter_in_another_unit) {
+  EXPECT_EQ(wrong_value_of(example()), "");
+  for (const auto& [parameter, unit] :
+       {std::pair(0U, "mm"), std::pair(0U, "rad"), std::pair(0U, ""), std::pair(1U, "deg")}) {
+    Calibration calibration = example();
+    auto& [name, quantity] = calibration.parameters[parameter];
+    quantity.unit = unit;
+    const std::string said = wrong_value_of(calibration);
+    EXPECT_NE(said.find("cal.json"), std::string::npos) << said;
+    EXPECT_NE(said.find("\"parameters." + name + ".unit\""), std::string::npos) << said;
+    EXPECT_NE(said.find(parameter == 0 ? "in m," : "in rad,"), std::string::npos) << said;
+  }
+}
+
+TEST(WrongValue, is_a_base_parameter_beyond_a_robot_unless_the_file_was_refused) {
+  for (const auto& [value, is_wrong] :
+       {std::pair(9.9, false), std::pair(10.1, true), std::pair(-154.0, true)}) {
+    Calibration calibration = example();
+    calibration.parameters[0].second.value = value;
+    EXPECT_EQ(!wrong_value_of(calibration).empty(), is_wrong) << value;
+    calibration.verdict = Verdict::refused;
+    EXPECT_EQ(wrong_value_of(calibration), "") << "what a failed fit gave can be looked at";
+  }
+}
+
+TEST(WrongValue, is_a_parameter_of_an_effect_in_another_unit_than_its_own) {
+  const UnitOfEffect seconds = [](const std::string& effect, const std::string& parameter) {
+    const bool known = effect == "time_offset" && parameter == "offset";
+    return known ? std::optional<std::string>("s") : std::nullopt;
+  };
+  Calibration calibration = example();
+  calibration.effects.push_back({"of_tomorrow", {{"size", {1.0, 0.1, "furlong"}}}, {}, {}, "host"});
+  EXPECT_FALSE(wrong_value(calibration, seconds, "cal.json"));
+  calibration.effects[0].parameters[0].second.unit = "ms";
+  const auto wrong = wrong_value(calibration, seconds, "cal.json");
+  ASSERT_TRUE(wrong);
+  EXPECT_NE(wrong->text().find("\"effects.time_offset.parameters.offset.unit\" is \"ms\", not \"s\""),
+            std::string::npos)
+      << wrong->text();
 }
 
 TEST(CalibrationFile, rejects_what_is_no_json_object) {
