@@ -139,7 +139,7 @@ struct Members<Quantity> {
   static constexpr const char* kDefinition = "quantity";
   static constexpr auto list() {
     return std::tuple{field("value", &Quantity::value),
-                      field("std", &Quantity::std, {.form = Form::deviation}),
+                      field("std", &Quantity::std, {.form = Form::deviation, .low = 0.0}),
                       field("unit", &Quantity::unit)};
   }
 };

