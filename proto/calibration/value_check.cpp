@@ -1,5 +1,7 @@
 #include "proto/calibration/value_check.hpp"
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <sstream>
 
@@ -10,6 +12,14 @@ namespace odomcalib {
 namespace {
 
 namespace settings = calibration_file::settings;
+
+/// What people write beside SI: a value of a file in one of these is taken for thousands, or for 57 times, of
+/// what it is. Others are names that programs give to the same unit ("1" for rad).
+bool is_beside_si(const std::string& unit) {
+  static constexpr std::array kUnits = {"",   "deg", "degrees", "mrad", "mm", "cm",   "in",
+                                        "ft", "ms",  "us",      "min",  "%",  "km/h", "rpm"};
+  return std::find(kUnits.begin(), kUnits.end(), unit) != kUnits.end();
+}
 
 std::string remedy_in(const std::string& unit) {
   return "state value and std in " + unit + ", or solve the recording again";
@@ -46,7 +56,7 @@ std::optional<Error> wrong_value(const Calibration& calibration, const UnitOfEff
   for (const EffectResult& effect : calibration.effects)
     for (const auto& [name, quantity] : effect.parameters) {
       const auto own = unit_of_effect ? unit_of_effect(effect.name, name) : std::nullopt;
-      if (own && quantity.unit != *own)
+      if (own && quantity.unit != *own && is_beside_si(quantity.unit))
         return wrong_unit("effects." + effect.name + ".parameters." + name, quantity.unit, *own, where);
     }
   return std::nullopt;

@@ -832,7 +832,7 @@ def network_captures():
 def odometry():
     def calibration(effects, **members):
         names = ("left_wheel_diameter", "right_wheel_diameter", "track_width", "lidar_x", "lidar_y", "lidar_yaw")
-        parameters = {name: {"value": 0.15, "std": 1e-4, "unit": "m"} for name in names}
+        parameters = {name: {"value": 0.15, "std": 1e-4, "unit": "rad" if name == "lidar_yaw" else "m"} for name in names}
         listed = [{"name": name, "stored_in": "host", "aliases": [],
                    "parameters": {key: {"value": value, "std": 1e-3, "unit": "1"} for key, value in values.items()},
                    "evidence": {"p_value": 0.01, "held_out_before": None, "held_out_after": None}}

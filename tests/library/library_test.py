@@ -67,7 +67,8 @@ def drive():
     names = ["left_wheel_diameter", "right_wheel_diameter", "track_width", "lidar_x", "lidar_y", "lidar_yaw"]
     diameter = robot.get("wheel_diameter") or robot["left_wheel_diameter"]
     values = [1.003 * diameter, 0.998 * diameter, 1.01 * robot["track_width"], 0.1, 0.0, 0.02]
-    parameters = {name: {"value": value, "std": 1e-4, "unit": "m"} for name, value in zip(names, values)}
+    parameters = {name: {"value": value, "std": 1e-4, "unit": "rad" if name == "lidar_yaw" else "m"}
+                  for name, value in zip(names, values)}
     matrix = [[1e-8 if row == column else 0.0 for column in range(6)] for row in range(6)]
     backlash = {name: {"value": value, "std": 1e-4, "unit": "rad"}
                 for name, value in (("left_play", 0.02), ("right_play", 0.03), ("spread", 0.0))}

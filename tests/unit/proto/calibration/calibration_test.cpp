@@ -238,6 +238,8 @@ TEST(WrongValue, is_a_parameter_of_an_effect_in_another_unit_than_its_own) {
   Calibration calibration = example();
   calibration.effects.push_back({"of_tomorrow", {{"size", {1.0, 0.1, "furlong"}}}, {}, {}, "host"});
   EXPECT_FALSE(wrong_value(calibration, seconds, "cal.json"));
+  calibration.effects[0].parameters[0].second.unit = "1";
+  EXPECT_FALSE(wrong_value(calibration, seconds, "cal.json")) << "a name that other programs give it";
   calibration.effects[0].parameters[0].second.unit = "ms";
   const auto wrong = wrong_value(calibration, seconds, "cal.json");
   ASSERT_TRUE(wrong);
