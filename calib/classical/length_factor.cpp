@@ -85,11 +85,15 @@ const Factor* factor_for(const std::array<Factor, kCount>& table, double ratio, 
   return nullptr;
 }
 
+/// Three digits, and no exponent in a number of counts.
+std::string rounded(double value) {
+  const double digit = std::pow(10.0, std::floor(std::log10(value)) - 2.0);
+  return exact(digit * std::round(value / digit));
+}
+
 /// To type, and how good it is.
 std::string to_type(const Found& found, double value) {
-  // Three digits, and no exponent in a number of counts.
-  const double digit = std::pow(10.0, std::floor(std::log10(value)) - 2.0);
-  return found.is_exact() ? exact(value) : "about " + exact(digit * std::round(value / digit));
+  return found.is_exact() ? exact(value) : "about " + rounded(value);
 }
 
 constexpr const char* kOnlyAbout = ": only as good as the nominal values, look up the true one";
@@ -184,7 +188,7 @@ Cause of_wheels(double ratio, const Measured& measured) {
   if (found.named == nullptr && is_gear(ratio)) found.named = &kGear;
   const bool are_counts = 1.0 / ratio > settings::kCountsFactor && measured.motion != MotionSource::odometry;
   return {of_both(ratio) + ": " + values + " are " + number(1.0 / ratio) + " times as large as the wheels'" +
-              (are_counts ? ": they look like encoder counts, some " + number(2.0 * math::kPi / ratio) +
+              (are_counts ? ": they look like encoder counts, some " + rounded(2.0 * math::kPi / ratio) +
                                 " a turn of the wheel"
                           : found.because()),
           "multiply " + values + " by " + to_type(found, found.ratio()) +

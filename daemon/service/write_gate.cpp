@@ -67,6 +67,7 @@ Error absurd_member(const std::string& path, const std::string& why) {
 }
 
 std::optional<Error> absurd_quantity(const std::string& path, const Quantity& quantity, double most_std) {
+  if (quantity.unit.empty()) return absurd_member(path + ".unit", "is missing");
   if (!std::isfinite(quantity.value)) return absurd_member(path + ".value", "is no finite number");
   if (!(quantity.std <= most_std))
     return absurd_member(path + ".std", fmt::format("is {}: with more than {:.3g} {} the value says nothing",

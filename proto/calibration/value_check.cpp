@@ -13,11 +13,11 @@ namespace {
 
 namespace settings = calibration_file::settings;
 
-/// What people write beside SI: a value of a file in one of these is taken for thousands, or for 57 times, of
-/// what it is. Others are names that programs give to the same unit ("1" for rad).
+/// Units that people write beside SI: a value in one of these is a thousand times, or 57 times, what it is
+/// taken for. Others are names that programs give to the same unit ("1" for rad).
 bool is_beside_si(const std::string& unit) {
-  static constexpr std::array kUnits = {"",   "deg", "degrees", "mrad", "mm", "cm",   "in",
-                                        "ft", "ms",  "us",      "min",  "%",  "km/h", "rpm"};
+  static constexpr std::array kUnits = {"deg", "degrees", "mrad", "mm", "cm",   "in", "ft",
+                                        "ms",  "us",      "min",  "%",  "km/h", "rpm"};
   return std::find(kUnits.begin(), kUnits.end(), unit) != kUnits.end();
 }
 
@@ -27,8 +27,8 @@ std::string remedy_in(const std::string& unit) {
 
 Error wrong_unit(const std::string& path, const std::string& unit, const std::string& own,
                  const std::string& where) {
-  const std::string is = unit.empty() ? "is missing" : "is \"" + unit + "\", not \"" + own + "\"";
-  return {ErrorCode::refused, "\"" + path + ".unit\" " + is, where, remedy_in(own)};
+  return {ErrorCode::refused, "\"" + path + ".unit\" is \"" + unit + "\", not \"" + own + "\"", where,
+          remedy_in(own)};
 }
 
 std::optional<Error> wrong_base_value(const std::string& name, const Quantity& quantity, bool is_refused,
@@ -37,7 +37,7 @@ std::optional<Error> wrong_base_value(const std::string& name, const Quantity& q
   const auto known = base_quantity_from(name);
   if (!known) return std::nullopt;
   const std::string unit = row_of(*known).unit;
-  if (quantity.unit != unit) return wrong_unit(path, quantity.unit, unit, where);
+  if (!quantity.unit.empty() && quantity.unit != unit) return wrong_unit(path, quantity.unit, unit, where);
   const bool is_angle = unit == "rad";
   const double most = is_angle ? settings::kMostAngle_rad : settings::kMostLength_m;
   if (is_refused || !(std::abs(quantity.value) > most)) return std::nullopt;

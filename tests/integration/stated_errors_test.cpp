@@ -53,7 +53,8 @@ TEST(StatedErrors, before_are_those_of_the_nominal_lengths_and_their_intervals_c
   const int count = robots();
   Tally metre, turn;
   for (int k = 0; k < count; ++k) {
-    const sim::SimulationConfig config = sim::standard_config(kSeed + static_cast<unsigned>(k));
+    const unsigned seed = kSeed + static_cast<unsigned>(k);
+    const sim::SimulationConfig config = sim::standard_config(seed);
     const sim::SimulatedRun run =
         sim::simulate_recording(config, sim::follow(config.nominal, sim::guided_pattern()));
     const Calibration found = calib::solve({&run.recording, 1}, {.effects = {"none"}});
@@ -63,7 +64,7 @@ TEST(StatedErrors, before_are_those_of_the_nominal_lengths_and_their_intervals_c
       // The noise of the reference is part of what is stated.
       const double truth = std::hypot(true_error(error.name, config.nominal, run.truth), *error.noise_floor);
       (error.unit == "m" ? metre : turn).add(*error.before, truth);
-      EXPECT_LT(error.after->value, 2.0 * *error.noise_floor) << error.name << ", seed " << kSeed + k;
+      EXPECT_LT(error.after->value, 2.0 * *error.noise_floor) << error.name << ", seed " << seed;
     }
   }
   for (const auto& [name, tally] : {std::pair("metre", metre), std::pair("full turn", turn)}) {

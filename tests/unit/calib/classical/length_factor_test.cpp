@@ -96,7 +96,7 @@ TEST(LengthFactor, takes_angles_that_are_a_hundred_times_too_large_for_counts) {
     EXPECT_FALSE(holds(text, "gear")) << text;
     EXPECT_FALSE(holds(text, "set wheel_diameter")) << text;
   }
-  EXPECT_TRUE(holds(told({1.0 / 90.0, 1.0 / 90.0, 1.0}, false, MotionSource::wheels), "before a gear"));
+  EXPECT_TRUE(holds(told({1.0 / 30.0, 1.0 / 30.0, 1.0}, false, MotionSource::wheels), "before a gear"));
 }
 
 TEST(LengthFactor, names_the_track_alone_and_one_wheel_alone) {

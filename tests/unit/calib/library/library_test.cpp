@@ -458,7 +458,7 @@ TEST(Library, velocity_and_lidar_pose_are_those_of_the_calibration) {
       odomcalib_odometry_lidar_pose(open(to_json(calibration)).handle.get(), std::array<double, 3>{}.data()),
       ODOMCALIB_NOT_KNOWN);
   for (const char* name : {"lidar_x", "lidar_y", "lidar_yaw"})
-    calibration.parameters.push_back({name, {0.2, 0.1, "m"}});
+    calibration.parameters.push_back({name, {0.2, 0.1, name == std::string("lidar_yaw") ? "rad" : "m"}});
   const auto opened = open(to_json(calibration));
   std::array<double, 3> lidar{}, velocity{};
   EXPECT_EQ(odomcalib_odometry_lidar_pose(opened.handle.get(), lidar.data()), ODOMCALIB_OK);
