@@ -19,7 +19,7 @@ Recording begun_anew(bool exactly) {
     pose.x += 0.02 * std::cos(pose.yaw + 0.5 * turn);
     pose.y += 0.02 * std::sin(pose.yaw + 0.5 * turn);
     pose.yaw += turn;
-    if (k == 1101) pose = {pose.t, exactly ? 0.0 : 1e-3, 0.0, 0.0};
+    if (k == 1201) pose = {pose.t, exactly ? 0.0 : 1e-3, 0.0, 0.0};
     recording.odometry.push_back(pose);
   }
   return recording;
