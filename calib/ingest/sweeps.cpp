@@ -11,6 +11,7 @@
 #include "calib/matching/surface.hpp"
 #include "calib/math/median.hpp"
 #include "calib/math/se2.hpp"
+#include "proto/recording/scan_checks.hpp"
 #include "proto/recording/scan_parts.hpp"
 
 namespace odomcalib::calib::ingest {
@@ -28,15 +29,6 @@ bool could_sweep(const Recording& recording, SweepKind kind) {
            return states_a_sweep(scan) != is_stated || !scan.times.empty() ||
                   scan.sensor != scans.front().sensor;
          });
-}
-
-void list_backwards(Scan& scan) {
-  if (scan.ranges.empty()) return;
-  scan.angle_min = scan.angle(scan.ranges.size() - 1);
-  scan.angle_increment = -scan.angle_increment;
-  std::reverse(scan.ranges.begin(), scan.ranges.end());
-  std::reverse(scan.angles.begin(), scan.angles.end());
-  std::reverse(scan.intensities.begin(), scan.intensities.end());
 }
 
 double angle_between_beams(const Scan& scan) {

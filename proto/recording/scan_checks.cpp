@@ -139,15 +139,19 @@ const RangeUnit* range_unit_of_reason(const std::string& reason) {
   return unit == kRangeUnits.end() ? nullptr : unit;
 }
 
-void list_first_sent_first(Scan& scan) {
-  if (!(scan.time_increment.value_or(0.0) < 0.0) || !scan.times.empty() || scan.ranges.empty()) return;
-  const auto steps = static_cast<double>(scan.ranges.size() - 1);
-  scan.t += steps * *scan.time_increment;
-  scan.angle_min += steps * scan.angle_increment;
+void list_backwards(Scan& scan) {
+  if (scan.ranges.empty()) return;
+  scan.angle_min += static_cast<double>(scan.ranges.size() - 1) * scan.angle_increment;
   scan.angle_increment = -scan.angle_increment;
-  scan.time_increment = -*scan.time_increment;
   for (auto* values : {&scan.ranges, &scan.angles, &scan.intensities})
     std::reverse(values->begin(), values->end());
+}
+
+void list_first_sent_first(Scan& scan) {
+  if (!(scan.time_increment.value_or(0.0) < 0.0) || !scan.times.empty() || scan.ranges.empty()) return;
+  scan.t += static_cast<double>(scan.ranges.size() - 1) * *scan.time_increment;
+  scan.time_increment = -*scan.time_increment;
+  list_backwards(scan);
 }
 
 BeamProblems clean_scan(Scan& scan) {

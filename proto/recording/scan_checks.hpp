@@ -29,6 +29,9 @@ const RangeUnit* range_unit_of_reason(const std::string& reason);
 /// Reason of a discarded beam whose range lies outside the limits.
 std::string reason_outside_limits(const RangeUnit* unit);
 
+/// Lists the beams the other way round; stamp and times stay.
+void list_backwards(Scan& scan);
+
 /// A negative time_increment says that the last beam was sent first: lists the beams the other way round,
 /// from the time of that one on.
 void list_first_sent_first(Scan& scan);
