@@ -30,6 +30,8 @@ struct JointTest {
   std::size_t freedom = 0;  ///< its degrees of freedom
   double p_value = 1.0;
   [[nodiscard]] bool is_change() const;
+  /// No value is in both with a deviation.
+  [[nodiscard]] bool is_empty() const { return freedom == 0; }
 };
 
 struct Difference {

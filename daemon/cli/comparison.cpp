@@ -134,7 +134,7 @@ std::optional<Error> not_comparable(const std::vector<ComparedRobot>& robots) {
 
 /// Nobody could say whether something changed.
 std::optional<Error> nothing_in_common(const ComparedRobot& robot) {
-  const auto is_empty = [](const comparison::Difference& step) { return step.joint.freedom == 0; };
+  const auto is_empty = [](const comparison::Difference& step) { return step.joint.is_empty(); };
   if (!std::all_of(robot.steps.begin(), robot.steps.end(), is_empty)) return std::nullopt;
   return Error{
       ErrorCode::usage,

@@ -56,8 +56,7 @@ const Change* farthest(const Difference& difference) {
   return found == all.end() ? nullptr : &*found;
 }
 
-/// No value is in both with a deviation.
-bool is_empty(const Difference& difference) { return difference.joint.freedom == 0; }
+bool is_empty(const Difference& difference) { return difference.joint.is_empty(); }
 
 std::string what_changed(const Difference& difference) {
   if (is_empty(difference)) return "nothing in common";
@@ -342,7 +341,7 @@ std::string finding(const ComparedRobot& robot) {
   const bool changed = test.is_change() || std::any_of(robot.steps.begin(), robot.steps.end(),
                                                        [](const Difference& one) { return one.is_change(); });
   const char* what = changed ? "something changed" : "nothing changed";
-  return test.freedom == 0 ? what : fmt::format("{} ({})", what, p_text(test.p_value));
+  return test.is_empty() ? what : fmt::format("{} ({})", what, p_text(test.p_value));
 }
 
 /// Sections, the most important first: the whole change, where it leads, and then how it came about.
