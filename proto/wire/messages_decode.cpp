@@ -93,7 +93,7 @@ std::optional<ScanMessage> decode_scan(std::string_view bytes) {
   out.scan.angle_min = read_float(reader);
   out.scan.angle_increment = read_float(reader);
   const double time_increment = read_float(reader);
-  if (time_increment > 0.0) out.scan.time_increment = time_increment;
+  if (time_increment != 0.0) out.scan.time_increment = time_increment;
   out.scan.range_min = read_float(reader);
   out.scan.range_max = read_float(reader);
   out.scan.ranges = read_floats(reader);

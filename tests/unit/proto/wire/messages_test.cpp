@@ -123,6 +123,14 @@ TEST(Messages, carry_no_nan_no_infinity_and_no_text_behind_a_nul) {
   EXPECT_EQ(decode_pose(encode(kStamp, PoseSample{0, NAN, INFINITY, 1}))->pose.x, 0.0);
 }
 
+TEST(Messages, a_scan_whose_last_beam_is_sent_first_says_so) {
+  Scan scan = example_scan();
+  scan.time_increment = -0.25;
+  const auto back = decode_scan(encode(kStamp, scan));
+  ASSERT_TRUE(back);
+  EXPECT_EQ(back->scan.time_increment, -0.25);
+}
+
 TEST(Messages, are_refused_at_every_other_length) {
   const auto bytes = encode(kStamp, example_scan());
   ASSERT_TRUE(decode_scan(bytes));
