@@ -12,6 +12,7 @@
 #include "calib/ingest/unit_check.hpp"
 #include "calib/math/median.hpp"
 #include "calib/math/number_text.hpp"
+#include "calib/wheels/settings.hpp"
 #include "proto/recording/scan_checks.hpp"
 
 namespace odomcalib::calib::ingest {
@@ -111,7 +112,7 @@ bool stands(const Recording& recording, Count count) {
   const auto [low, high] =
       std::minmax_element(recording.ticks.begin(), recording.ticks.end(),
                           [&](const auto& a, const auto& b) { return count(a) < count(b); });
-  return count(*high) - count(*low) <= settings::kStandingCounts;
+  return count(*high) - count(*low) <= wheels::settings::kStandingCounts;
 }
 
 /// One recording may well be of a turn about a wheel.

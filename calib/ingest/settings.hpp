@@ -3,7 +3,6 @@
 #pragma once
 
 #include <cstddef>
-#include <cstdint>
 #include <numbers>
 
 #include "calib/matching/settings.hpp"
@@ -191,10 +190,5 @@ inline constexpr int kContestRounds = 5;
 inline constexpr double kContestLimit = 2.0;
 /// Share of the errors that speaks for even stamps, and deviations that it must be beyond. Chosen, sensitive.
 inline constexpr double kEvenShare = 0.5, kEvenSigmas = 3.0;
-
-// --- Counts ----------------------------------------------------------------------------------------------
-
-/// Counts that differ by no more are those of a wheel that stands. Chosen, insensitive.
-inline constexpr std::int64_t kStandingCounts = 2;
 
 }  // namespace odomcalib::calib::ingest::settings

@@ -114,7 +114,7 @@ PairSet pairs_from_poses(const Recording& recording, const vehicle::DriveModel& 
     const vehicle::Interval interval{times[keyframes[k]], times[keyframes[k + 1]]};
     const double turn = trajectory.at(interval.end).yaw - trajectory.at(interval.begin).yaw;
     const char* reason = ambiguity_of(turn);
-    if (!model.track().covers(interval.begin, interval.end)) reason = "no ticks";
+    if (!model.track().covers(interval.begin, interval.end)) reason = "no counts at that time";
     if (ingest::has_gap(times, keyframes[k], keyframes[k + 1])) reason = "reference interrupted";
     if (reason != nullptr) {
       ++set.rejected[reason];

@@ -56,7 +56,7 @@ math::Pose ScanSurfaces::guess(std::size_t from, std::size_t to) const {
 
 const char* ScanSurfaces::gap_between(std::size_t from, std::size_t to) const {
   if (ingest::has_gap(times_, from, to)) return "reference interrupted";
-  return model_.track().covers(times_[from], times_[to]) ? nullptr : "no ticks";
+  return model_.track().covers(times_[from], times_[to]) ? nullptr : "no counts at that time";
 }
 
 matching::BeamMotion motion_in_sweep(const vehicle::Trajectory& trajectory, const math::Pose& mount,

@@ -7,6 +7,7 @@
 #include "calib/ingest/form.hpp"
 #include "calib/ingest/settings.hpp"
 #include "calib/report/settings.hpp"
+#include "calib/wheels/settings.hpp"
 
 namespace odomcalib::calib::report {
 namespace {
@@ -25,7 +26,7 @@ bool stands(const std::vector<TickSample>& ticks, double t) {
   if (after == ticks.begin() || after == ticks.end()) return true;
   const TickSample& before = *std::prev(after);
   return std::max(std::abs(after->left - before.left), std::abs(after->right - before.right)) <=
-         ingest::settings::kStandingCounts;
+         wheels::settings::kStandingCounts;
 }
 
 std::vector<Discarded> where_many(Discarded one, double share) {

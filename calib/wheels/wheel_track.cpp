@@ -76,6 +76,28 @@ void append_refined(const WheelTrack& track, std::size_t begin, std::size_t end,
   copy(end - 1);
 }
 
+/// Whether the samples before k are missing while a wheel turned: nobody knows when it did. A wheel that
+/// stands may well be silent.
+/// @param longest s, that samples may be apart
+bool is_after_lost_motion(const WheelTrack& track, std::size_t k, double longest) {
+  if (track.t[k] - track.t[k - 1] <= longest) return false;
+  const double most = static_cast<double>(settings::kStandingCounts) * track.tick_angle;
+  return std::abs(track.left[k] - track.left[k - 1]) > most ||
+         std::abs(track.right[k] - track.right[k - 1]) > most;
+}
+
+/// A segment of its own after each such gap.
+std::vector<int> segments_of(const WheelTrack& track, double period) {
+  const double longest = std::max(settings::kGap_s, settings::kSimilarIntervals * period);
+  std::vector<int> segments = track.segment;
+  int gaps = 0;
+  for (std::size_t k = 1; k < segments.size(); ++k) {
+    if (is_after_lost_motion(track, k, longest)) ++gaps;
+    segments[k] += gaps;
+  }
+  return segments;
+}
+
 }  // namespace
 
 std::size_t WheelTrack::interval_at(double time) const {
@@ -144,10 +166,11 @@ WheelTrack wheel_track_from_increments(const Recording& recording) {
   return track;
 }
 
-WheelTrack finely_sampled(const WheelTrack& track) {
+WheelTrack finely_sampled(WheelTrack track) {
   WheelTrack out;
   out.tick_period = median_period(track);
   out.tick_angle = track.tick_angle;
+  track.segment = segments_of(track, out.tick_period);
   std::size_t begin = 0;
   for (std::size_t k = 1; k <= track.t.size(); ++k) {
     const bool goes_on = k < track.t.size() && track.segment[k] == track.segment[begin] &&

@@ -76,7 +76,7 @@ inline BaseParameters nominal_base(const RobotDescription& robot) {
 /// apart runs ahead by a dt^2 / 12 on the average, and as that grows and fades with the acceleration it
 /// lengthens wheels by some 0.1 %: between the samples of a segment the angles follow a cubic (modified
 /// Akima: Akima 1970, J. ACM 17(4), eq. 3, with weights that keep a standing wheel still). Gaps of over half
-/// a second stay as they are.
-WheelTrack finely_sampled(const WheelTrack& track);
+/// a second stay as they are; where a wheel turned in one, a segment ends, for nobody knows when it turned.
+WheelTrack finely_sampled(WheelTrack track);
 
 }  // namespace odomcalib::calib::wheels

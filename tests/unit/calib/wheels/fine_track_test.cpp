@@ -64,6 +64,7 @@ TEST(FineTrack, a_wheel_that_stands_does_not_move) {
 WheelTrack counted_every(double period) {
   constexpr double kCount = 2.0 * std::numbers::pi / 8000.0;
   WheelTrack track = sampled_every(period);
+  track.tick_angle = kCount;
   for (auto* angles : {&track.left, &track.right})
     for (double& angle : *angles) angle = kCount * std::round(4273.0 + angle / kCount);
   return track;
@@ -95,6 +96,40 @@ TEST(FineTrack, nothing_is_made_up_in_gaps_and_across_segments) {
   EXPECT_EQ(inside(track.t[29], track.t[30]), 0);
   EXPECT_EQ(inside(track.t[39], track.t[40]), 0);
   EXPECT_GT(inside(track.t[38], track.t[39]), 0);
+}
+
+/// Whether motion is known between two times.
+bool is_whole(const WheelTrack& track, double from, double to) {
+  return finely_sampled(track).covers(from, to);
+}
+
+WheelTrack without(WheelTrack track, double from, double to) {
+  for (std::size_t k = track.t.size(); k-- > 0;) {
+    if (track.t[k] < from || track.t[k] > to) continue;
+    const auto at = static_cast<std::ptrdiff_t>(k);
+    for (auto* values : {&track.t, &track.left, &track.right}) values->erase(values->begin() + at);
+    track.segment.erase(track.segment.begin() + at);
+  }
+  return track;
+}
+
+TEST(FineTrack, motion_is_unknown_where_counts_are_missing_while_a_wheel_turns) {
+  const WheelTrack track = counted_every(0.02);
+  EXPECT_TRUE(is_whole(track, 0.1, 5.5));
+  EXPECT_FALSE(is_whole(without(track, 2.5, 3.5), 2.4, 3.6));
+  EXPECT_FALSE(is_whole(without(track, 2.5, 3.5), 0.1, 5.5));
+  EXPECT_TRUE(is_whole(without(track, 2.5, 3.5), 0.1, 2.4));
+  EXPECT_TRUE(is_whole(without(track, 2.5, 3.5), 3.6, 5.5));
+  EXPECT_TRUE(is_whole(without(track, 2.5, 2.9), 2.4, 3.6)) << "a few messages";
+}
+
+TEST(FineTrack, a_wheel_that_stands_may_be_silent) {
+  EXPECT_TRUE(is_whole(without(counted_every(0.02), 0.1, 0.95), 0.05, 1.5));
+}
+
+TEST(FineTrack, rare_counts_are_no_gaps) {
+  EXPECT_TRUE(is_whole(counted_every(0.6), 0.1, 5.0));
+  EXPECT_FALSE(is_whole(without(counted_every(0.6), 2.3, 3.5), 0.1, 5.0)) << "two are missing";
 }
 
 TEST(FineTrack, few_samples_stay_as_they_are) {
