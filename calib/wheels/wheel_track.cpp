@@ -4,6 +4,7 @@
 #include <boost/math/interpolators/makima.hpp>
 #include <cmath>
 #include <cstdint>
+#include <numeric>
 #include <utility>
 
 #include "calib/math/median.hpp"
@@ -76,23 +77,34 @@ void append_refined(const WheelTrack& track, std::size_t begin, std::size_t end,
   copy(end - 1);
 }
 
-/// Whether the samples before k are missing while a wheel turned: nobody knows when it did. A wheel that
-/// stands may well be silent.
-/// @param longest s, that samples may be apart
-bool is_after_lost_motion(const WheelTrack& track, std::size_t k, double longest) {
-  if (track.t[k] - track.t[k - 1] <= longest) return false;
+/// Whether a wheel turned from the sample before to this one.
+bool has_turned(const WheelTrack& track, std::size_t k) {
   const double most = static_cast<double>(settings::kStandingCounts) * track.tick_angle;
   return std::abs(track.left[k] - track.left[k - 1]) > most ||
          std::abs(track.right[k] - track.right[k - 1]) > most;
 }
 
-/// A segment of its own after each such gap.
-std::vector<int> segments_of(const WheelTrack& track, double period) {
-  const double longest = std::max(settings::kGap_s, settings::kSimilarIntervals * period);
+/// s: half of the time in which a wheel turned lies in intervals that are no longer. Of samples that come in
+/// bursts these are the ones from burst to burst.
+double usual_interval(const WheelTrack& track) {
+  std::vector<double> intervals;
+  for (std::size_t k = 1; k < track.t.size(); ++k)
+    if (has_turned(track, k)) intervals.push_back(track.t[k] - track.t[k - 1]);
+  std::sort(intervals.begin(), intervals.end());
+  const double half = 0.5 * std::accumulate(intervals.begin(), intervals.end(), 0.0);
+  double time = 0.0;
+  for (const double interval : intervals)
+    if ((time += interval) >= half) return interval;
+  return 0.0;
+}
+
+/// A segment of its own after each gap in which a wheel turned: nobody knows when it did.
+std::vector<int> segments_of(const WheelTrack& track) {
+  const double longest = std::max(settings::kGap_s, settings::kSimilarIntervals * usual_interval(track));
   std::vector<int> segments = track.segment;
   int gaps = 0;
   for (std::size_t k = 1; k < segments.size(); ++k) {
-    if (is_after_lost_motion(track, k, longest)) ++gaps;
+    if (track.t[k] - track.t[k - 1] > longest && has_turned(track, k)) ++gaps;
     segments[k] += gaps;
   }
   return segments;
@@ -170,7 +182,7 @@ WheelTrack finely_sampled(WheelTrack track) {
   WheelTrack out;
   out.tick_period = median_period(track);
   out.tick_angle = track.tick_angle;
-  track.segment = segments_of(track, out.tick_period);
+  track.segment = segments_of(track);
   std::size_t begin = 0;
   for (std::size_t k = 1; k <= track.t.size(); ++k) {
     const bool goes_on = k < track.t.size() && track.segment[k] == track.segment[begin] &&

@@ -132,6 +132,12 @@ TEST(FineTrack, rare_counts_are_no_gaps) {
   EXPECT_FALSE(is_whole(without(counted_every(0.6), 2.3, 3.5), 0.1, 5.0)) << "two are missing";
 }
 
+TEST(FineTrack, pauses_between_bursts_are_no_gaps) {
+  WheelTrack bursts = counted_every(0.02);
+  for (double t = 0.09; t < 6.0; t += 0.7) bursts = without(bursts, t, t + 0.6);
+  EXPECT_TRUE(is_whole(bursts, 0.05, 5.0));
+}
+
 TEST(FineTrack, few_samples_stay_as_they_are) {
   WheelTrack track = sampled_every(0.1);
   for (auto* values : {&track.t, &track.left, &track.right}) values->resize(3);
