@@ -56,6 +56,8 @@ SolveSettings settings_of(const SolveArguments& options) {
   const calib::classical::ClosedFormOptions usual;
   if (options.cuts.rounds != usual.rounds) settings.rounds = options.cuts.rounds;
   if (options.cuts.drop_fraction != usual.drop_fraction) settings.cut = options.cuts.drop_fraction;
+  if (options.same_robot) settings.same_robot = true;
+  if (options.same_lidar) settings.same_lidar = true;
   settings.place = options.place;
   settings.note = options.note;
   return settings;

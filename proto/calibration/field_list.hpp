@@ -564,6 +564,8 @@ struct Members<SolveSettings> {
                             {.meaning = "share that each cuts, the same",
                              .form = Form::finite,
                              .presence = Presence::if_set}),
+                      field("same_robot", &S::same_robot, kIfSet),
+                      field("same_lidar", &S::same_lidar, kIfSet),
                       field("place", &S::place, kIfSet),
                       field("note", &S::note, kIfSet)};
   }

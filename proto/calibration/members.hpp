@@ -106,8 +106,9 @@ struct SolveSettings {
   std::string version;
   std::optional<std::vector<std::string>> effects;
   std::string scale, sensor;
-  std::optional<int> rounds;  ///< of the closed form, where they are not the usual ones
-  std::optional<double> cut;  ///< share that each cuts, the same
+  std::optional<int> rounds;                   ///< of the closed form, where they are not the usual ones
+  std::optional<double> cut;                   ///< share that each cuts, the same
+  std::optional<bool> same_robot, same_lidar;  ///< somebody said so, whatever the names; absent: nobody
   std::string place, note;
 };
 

@@ -582,6 +582,17 @@ TEST_F(CommandLine, predict_and_convert_say_what_they_go_on_without) {
   }
 }
 
+TEST_F(CommandLine, a_result_says_that_recordings_were_taken_for_those_of_one_robot) {
+  const auto settings_after = [this](const std::string& options) {
+    (void)ctl("solve drive.jsonl --effects none --out said.json" + options);
+    return json::parse(read("said.json")).at("settings");
+  };
+  EXPECT_FALSE(settings_after("").contains("same_robot"));
+  const json settings = settings_after(" --same-robot --same-lidar");
+  EXPECT_EQ(settings.at("same_robot"), true);
+  EXPECT_EQ(settings.at("same_lidar"), true);
+}
+
 TEST_F(CommandLine, S3_11_rounds_and_cut_of_the_closed_form_have_limits) {
   for (const std::string wrong : {"--rounds -1", "--rounds 1000", "--cut 0.9", "--cut nan"})
     EXPECT_EQ(ctl("solve drive.jsonl " + wrong).status, 2) << wrong;
