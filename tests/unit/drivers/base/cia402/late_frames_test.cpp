@@ -58,8 +58,10 @@ TEST(LateFrames, a_value_that_is_not_the_one_last_known_is_believed_when_it_was_
   EXPECT_FALSE(bench.job().error);
   bench.start_writing({{"left_wheel_diameter", 0.16}});
   EXPECT_FALSE(bench.job().error);
+  bench.sent.clear();
   ASSERT_TRUE(bench.controller->start_store(bench.now).ok());
   const auto asks = [&] {
+    if (bench.sent.empty()) return false;
     const CanFrame& frame = bench.sent.back();
     return frame.id == 0x601U && frame.data[0] == 0x40 && frame.data[2] == 0x21 && frame.data[3] == 1;
   };
