@@ -56,7 +56,7 @@ std::vector<bool> repeats_of(const std::vector<Sample>& samples) {
 }
 
 /// At rest a lidar without noise repeats itself as well: the wheels have to turn meanwhile.
-bool repeats_in_motion(const Recording& recording, const std::vector<bool>& repeats) {
+bool scans_repeat_in_motion(const Recording& recording, const std::vector<bool>& repeats) {
   WheelWay way(recording);
   for (std::size_t k = 1; k < repeats.size(); ++k)
     if (repeats[k] && way.between(recording.scans[k - 1].t, recording.scans[k].t) > settings::kMovedBetween_m)
@@ -66,17 +66,23 @@ bool repeats_in_motion(const Recording& recording, const std::vector<bool>& repe
 
 double way_between(const PoseSample& a, const PoseSample& b) { return std::hypot(b.x - a.x, b.y - a.y); }
 
-/// A robot that stops slows down before: a value that stays between two steps of motion was sent again.
-std::vector<bool> repeats_between_steps(const std::vector<PoseSample>& poses) {
+/// A robot that stops slows down before: a value that stays between two steps of motion was sent again. Or
+/// one is held, as by a camera that lost its marker, until it moves again.
+std::vector<bool> repeats_in_motion(const Recording& recording) {
+  const std::vector<PoseSample>& poses = recording.poses;
   const std::vector<bool> same = repeats_of(poses);
   std::vector<bool> repeats(poses.size(), false);
+  WheelWay way(recording);
   for (std::size_t k = 1; k < poses.size(); ++k) {
     if (!same[k] || same[k - 1]) continue;
     std::size_t next = k;
     while (next < poses.size() && same[next]) ++next;
-    if (k < 2 || next == poses.size() || next - k > settings::kMostRepeats) continue;
-    if (way_between(poses[k - 2], poses[k - 1]) < settings::kMovedBetween_m ||
-        way_between(poses[next - 1], poses[next]) < settings::kMovedBetween_m)
+    if (next == poses.size()) break;
+    const bool is_sent_again =
+        k >= 2 && next - k <= settings::kMostRepeats &&
+        std::min(way_between(poses[k - 2], poses[k - 1]), way_between(poses[next - 1], poses[next])) >=
+            settings::kMovedBetween_m;
+    if (!is_sent_again && way.between(poses[k - 1].t, poses[next - 1].t) < settings::kRolledWhileHeld_m)
       continue;
     std::fill(repeats.begin() + static_cast<std::ptrdiff_t>(k),
               repeats.begin() + static_cast<std::ptrdiff_t>(next), true);
@@ -107,12 +113,12 @@ std::optional<Recording> without(const Recording& recording, std::vector<Sample>
 
 std::optional<Recording> without_repeated_scans(const Recording& recording) {
   const std::vector<bool> repeats = repeats_of(recording.scans);
-  if (!repeats_in_motion(recording, repeats)) return std::nullopt;
+  if (!scans_repeat_in_motion(recording, repeats)) return std::nullopt;
   return without(recording, &Recording::scans, "scan", repeats);
 }
 
 std::optional<Recording> without_repeated_poses(const Recording& recording) {
-  const std::vector<bool> repeats = repeats_between_steps(recording.poses);
+  const std::vector<bool> repeats = repeats_in_motion(recording);
   if (std::find(repeats.begin(), repeats.end(), true) == repeats.end()) return std::nullopt;
   return without(recording, &Recording::poses, "pose", repeats);
 }

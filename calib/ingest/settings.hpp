@@ -65,8 +65,11 @@ inline constexpr int kReadingsOfScan = 12;
 /// m at the rim, between two scans that are equal in every reading: no lidar sees nothing of that. Chosen:
 /// several steps of a lidar that reads millimetres.
 inline constexpr double kMovedBetween_m = 5e-3;
-/// Poses in a row that a driver sends again. Chosen: of more, the robot stands.
+/// Poses in a row that a driver sends again. Chosen: of more, the robot stands, unless the wheels turn.
 inline constexpr std::size_t kMostRepeats = 3;
+/// m at the rim, that wheels turn while a pose is held. Chosen: several times a centimetre, to which poses
+/// are rounded now and then.
+inline constexpr double kRolledWhileHeld_m = 0.05;
 /// Beams by which the number varies while the head runs evenly. Derived: a turn is cut between two beams, so
 /// that one more or less fits.
 inline constexpr std::size_t kBeamsAtEnds = 1;

@@ -183,6 +183,30 @@ TEST(RepeatedPoses, are_left_out_up_to_three_in_a_row) {
   EXPECT_FALSE(without_repeated_poses(sent_again(0, 2))) << "nothing shows that it moved before";
 }
 
+/// The same, and counts of a robot that rolls a tenth of the way from pose to pose all the time.
+Recording held(std::size_t number, std::size_t times) {
+  Recording recording = sent_again(number, times);
+  recording.robot.left_wheel_diameter = recording.robot.right_wheel_diameter = 0.1 / math::kPi;
+  recording.robot.ticks_per_rev = 1000.0;
+  for (const PoseSample& pose : recording.poses) {
+    const auto count = static_cast<std::int64_t>(1000.0 * pose.t);
+    recording.ticks.push_back({pose.t, count, count});
+  }
+  return recording;
+}
+
+TEST(RepeatedPoses, are_left_out_where_one_is_held_while_the_wheels_turn) {
+  for (const std::size_t number : {0U, 10U}) {
+    const auto once = without_repeated_poses(held(number, 8));
+    ASSERT_TRUE(once) << number;
+    EXPECT_EQ(once->poses.size(), 20U) << number;
+  }
+  Recording standing = held(10, 8);
+  for (TickSample& tick : standing.ticks) tick.left = tick.right = 0;
+  EXPECT_FALSE(without_repeated_poses(standing));
+  EXPECT_FALSE(without_repeated_poses(held(19, 8))) << "the pose never moves again: the robot may be held";
+}
+
 /// Scans and poses every 0.1 s; the poses begin and end somewhere between.
 Recording with_poses(int scans, int poses) {
   Recording recording;
