@@ -71,20 +71,14 @@ bool is_no_better(const DriveError& error) {
   return could_gain(error) && error.after->value >= settings::kNoBetter * error.before->value;
 }
 
-/// Beyond what chance makes of so few stretches.
-bool is_worse(const DriveError& error) {
-  return is_no_better(error) && error.after->value > error.before->high;
-}
-
-/// None of the figures that were off came nearer to the truth, and one of them went away from it.
-bool is_harm_done(const std::vector<DriveError>& errors) {
-  return std::any_of(errors.begin(), errors.end(), is_worse) &&
-         std::none_of(errors.begin(), errors.end(),
+/// None of the figures that were off came nearer to the truth.
+bool is_nothing_gained(const std::vector<DriveError>& errors) {
+  return std::none_of(errors.begin(), errors.end(),
                       [](const DriveError& error) { return could_gain(error) && !is_no_better(error); });
 }
 
 Objections no_better_than_before(const Calibration&, const VerdictEvidence& evidence) {
-  const bool refuses = is_harm_done(evidence.drive_errors);
+  const bool refuses = is_nothing_gained(evidence.drive_errors);
   Objections found;
   for (const DriveError& error : evidence.drive_errors) {
     const auto words = std::find_if(kDriveFigures.begin(), kDriveFigures.end(),
