@@ -152,7 +152,7 @@ TEST(Messages, with_impossible_lengths_are_refused_without_allocating_them) {
   scan.sensor.clear();
   const auto bytes = encode(kStamp, scan);
   constexpr std::size_t kTextLength = 8 + 16 + 4;
-  constexpr std::size_t kRanges = kTextLength + 4 + 1 + 5 * 4;
+  constexpr std::size_t kRanges = kTextLength + 4 + 1 + std::size_t{5} * 4;
   ASSERT_TRUE(decode_scan(with_int32(bytes, kTextLength, 1)));
   for (const std::int32_t length : {0, -1, 2, INT32_MAX, INT32_MIN})
     EXPECT_FALSE(decode_scan(with_int32(bytes, kTextLength, length))) << length;
