@@ -1,6 +1,7 @@
 #include "calib/validation/drive_error.hpp"
 
 #include <algorithm>
+#include <array>
 #include <boost/math/distributions/chi_squared.hpp>
 #include <cmath>
 #include <map>
@@ -91,8 +92,7 @@ Bounded of_few(double root, std::size_t blocks) {
           root * std::sqrt(freedom / quantile(squares, 0.025))};
 }
 
-Bounded bounded(Part part, const std::vector<EvaluationWindow>& windows,
-                const std::vector<math::Pose>& errors) {
+Bounded bounded(Part part, std::span<const EvaluationWindow> windows, std::span<const math::Pose> errors) {
   std::map<std::size_t, math::RatioOfSums> by_block;
   math::RatioOfSums total;
   for (std::size_t k = 0; k < windows.size(); ++k) {
@@ -106,24 +106,30 @@ Bounded bounded(Part part, const std::vector<EvaluationWindow>& windows,
 }
 
 /// Over the windows as they are, whatever their amount.
-double rms_position(const std::vector<math::Pose>& errors) {
+double rms_position(std::span<const math::Pose> errors) {
   double sum = 0.0;
   for (const math::Pose& e : errors) sum += square_of(Part::position, e);
   return std::sqrt(sum / static_cast<double>(errors.size()));
 }
 
-double mean_amount(const std::vector<EvaluationWindow>& windows) {
+double mean_amount(std::span<const EvaluationWindow> windows) {
   double sum = 0.0;
   for (const EvaluationWindow& one : windows) sum += one.amount;
   return sum / static_cast<double>(windows.size());
 }
 
-double noise_floor(Part part, const std::vector<EvaluationWindow>& windows) {
+double noise_floor(Part part, std::span<const EvaluationWindow> windows) {
   math::RatioOfSums sums;
   for (const EvaluationWindow& s : windows)
     sums += {std::max(variance_of(part, s.covariance), 0.0), s.amount * s.amount};
   return sums.root();
 }
+
+/// Windows of one sort, and the errors of each model in them; none of a model that there is not.
+struct Judged {
+  std::span<const EvaluationWindow> windows;
+  std::span<const math::Pose> before, geometry, after;
+};
 
 class Judge {
  public:
@@ -139,43 +145,43 @@ class Judge {
             with_wheels(full.fit->parameters, full.effects, vehicle::to_base(vehicle::as_span(p))));
   }
 
-  void add(WindowKind kind, const std::vector<std::pair<std::string, Part>>& names,
-           std::vector<DriveError>& out) const {
-    const auto windows =
-        find_windows(kind, data_, folds_, *full_.fit, measured_pairs(data_, trusted_pairs(*full_.fit)));
-    if (windows.size() < settings::kFewestOfAKind) return;
-    const auto measured = measured_motions(data_, windows, full_parameters_, full_.effects);
-    const auto before = errors(windows, measured, nominal_parameters_);
-    const auto geometry = errors(windows, measured, geometry_parameters_);
-    const auto after = errors(windows, measured, full_parameters_);
-    const auto figure = [&](Part part, const std::vector<math::Pose>& e) {
-      return e.empty() ? std::nullopt : std::optional(bounded(part, windows, e));
-    };
-    for (const auto& [name, part] : names)
-      out.push_back({name, part == Part::heading ? "rad" : "m", windows.size(), figure(part, before),
-                     figure(part, geometry), figure(part, after), noise_floor(part, windows)});
+  void add(WindowKind kind) {
+    append(find_windows(kind, data_, folds_, *full_.fit, measured_pairs(data_, trusted_pairs(*full_.fit))));
+  }
+  void add_way(double way) {
+    append(find_windows_of_way(way, data_, folds_, *full_.fit,
+                               measured_pairs(data_, trusted_pairs(*full_.fit))));
   }
 
-  [[nodiscard]] std::optional<ErrorGrowth> over(double way) const {
-    const auto windows =
-        find_windows_of_way(way, data_, folds_, *full_.fit, measured_pairs(data_, trusted_pairs(*full_.fit)));
-    if (windows.size() < settings::kFewestOfAKind) return std::nullopt;
-    const auto measured = measured_motions(data_, windows, full_parameters_, full_.effects);
-    const auto figure = [&](const std::vector<Eigen::VectorXd>& parameters) {
-      const auto all = errors(windows, measured, parameters);
-      return all.empty() ? std::nullopt : std::optional(rms_position(all));
+  /// Each model goes along each recording once, for the windows of all sorts that were added.
+  void judge() {
+    const auto measured = measured_motions(data_, windows_, full_parameters_, full_.effects);
+    before_ = errors(measured, nominal_parameters_);
+    geometry_ = errors(measured, geometry_parameters_);
+    after_ = errors(measured, full_parameters_);
+  }
+
+  /// @param sort in the order in which they were added; nullopt where there are too few windows of it
+  [[nodiscard]] std::optional<Judged> of(std::size_t sort) const {
+    const std::size_t begin = sort == 0 ? 0 : ends_[sort - 1], count = ends_[sort] - begin;
+    if (count < settings::kFewestOfAKind) return std::nullopt;
+    const auto part = [&](const std::vector<math::Pose>& errors) {
+      return errors.empty() ? std::span<const math::Pose>() : std::span(errors).subspan(begin, count);
     };
-    return ErrorGrowth{mean_amount(windows), windows.size(), figure(nominal_parameters_),
-                       figure(geometry_parameters_), figure(full_parameters_)};
+    return Judged{std::span(windows_).subspan(begin, count), part(before_), part(geometry_), part(after_)};
   }
 
  private:
+  void append(const std::vector<EvaluationWindow>& windows) {
+    windows_.insert(windows_.end(), windows.begin(), windows.end());
+    ends_.push_back(windows_.size());
+  }
+
   /// Empty without parameters.
-  [[nodiscard]] std::vector<math::Pose> errors(const std::vector<EvaluationWindow>& windows,
-                                               const std::vector<math::Pose>& measured,
+  [[nodiscard]] std::vector<math::Pose> errors(const std::vector<math::Pose>& measured,
                                                const std::vector<Eigen::VectorXd>& parameters) const {
     if (parameters.empty()) return {};
-    return errors_of(data_, windows, measured, parameters, full_.effects);
+    return errors_of(data_, windows_, measured, parameters, full_.effects);
   }
 
   [[nodiscard]] std::vector<Eigen::VectorXd> by_fold(const JudgedModel& model) const {
@@ -189,7 +195,44 @@ class Judge {
   const JudgedModel& full_;
   std::vector<std::size_t> folds_;
   std::vector<Eigen::VectorXd> nominal_parameters_, geometry_parameters_, full_parameters_;  ///< by fold
+  std::vector<EvaluationWindow> windows_;                                                    ///< of all sorts
+  std::vector<std::size_t> ends_;                      ///< of each sort among them
+  std::vector<math::Pose> before_, geometry_, after_;  ///< of all windows
 };
+
+/// What is judged over windows of one kind.
+struct Figure {
+  std::size_t kind = 0;  ///< in kKinds
+  const char* name;
+  Part part;
+};
+
+constexpr std::array kKinds = {WindowKind::straight, WindowKind::turn, WindowKind::open_loop};
+constexpr std::array kFigures = {
+    Figure{0, "straight_metre_length", Part::along}, Figure{0, "straight_metre_heading", Part::heading},
+    Figure{1, "full_turn_heading", Part::heading}, Figure{2, kOpenLoopPosition, Part::position},
+    Figure{2, "open_loop_10s_heading", Part::heading}};
+
+DriveError drive_error(const Figure& figure, const Judged& judged) {
+  const auto error_with = [&](std::span<const math::Pose> errors) {
+    return errors.empty() ? std::nullopt : std::optional(bounded(figure.part, judged.windows, errors));
+  };
+  return {figure.name,
+          figure.part == Part::heading ? "rad" : "m",
+          judged.windows.size(),
+          error_with(judged.before),
+          error_with(judged.geometry),
+          error_with(judged.after),
+          noise_floor(figure.part, judged.windows)};
+}
+
+ErrorGrowth growth_over(const Judged& judged) {
+  const auto error_with = [](std::span<const math::Pose> errors) {
+    return errors.empty() ? std::nullopt : std::optional(rms_position(errors));
+  };
+  return {mean_amount(judged.windows), judged.windows.size(), error_with(judged.before),
+          error_with(judged.geometry), error_with(judged.after)};
+}
 
 }  // namespace
 
@@ -213,23 +256,24 @@ Eigen::VectorXd with_wheels(const Eigen::VectorXd& full, const vehicle::EffectLi
 std::vector<DriveError> drive_errors(std::span<const measurement::FitData> data,
                                      const wheels::BaseParameters& nominal, const JudgedModel* geometry,
                                      const JudgedModel& full) {
-  const Judge judge(data, nominal, geometry, full);
+  Judge judge(data, nominal, geometry, full);
+  for (const WindowKind kind : kKinds) judge.add(kind);
+  judge.judge();
   std::vector<DriveError> errors;
-  judge.add(WindowKind::straight,
-            {{"straight_metre_length", Part::along}, {"straight_metre_heading", Part::heading}}, errors);
-  judge.add(WindowKind::turn, {{"full_turn_heading", Part::heading}}, errors);
-  judge.add(WindowKind::open_loop,
-            {{kOpenLoopPosition, Part::position}, {"open_loop_10s_heading", Part::heading}}, errors);
+  for (const Figure& figure : kFigures)
+    if (const auto judged = judge.of(figure.kind)) errors.push_back(drive_error(figure, *judged));
   return errors;
 }
 
 std::vector<ErrorGrowth> error_growth(std::span<const measurement::FitData> data,
                                       const wheels::BaseParameters& nominal, const JudgedModel* geometry,
                                       const JudgedModel& full) {
-  const Judge judge(data, nominal, geometry, full);
+  Judge judge(data, nominal, geometry, full);
+  for (const double way : settings::kWays_m) judge.add_way(way);
+  judge.judge();
   std::vector<ErrorGrowth> growth;
-  for (const double way : settings::kWays_m)
-    if (const auto one = judge.over(way)) growth.push_back(*one);
+  for (std::size_t k = 0; k < settings::kWays_m.size(); ++k)
+    if (const auto judged = judge.of(k)) growth.push_back(growth_over(*judged));
   return growth;
 }
 
