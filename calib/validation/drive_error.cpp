@@ -195,12 +195,14 @@ class Judge {
   const JudgedModel& full_;
   std::vector<std::size_t> folds_;
   std::vector<Eigen::VectorXd> nominal_parameters_, geometry_parameters_, full_parameters_;  ///< by fold
-  std::vector<EvaluationWindow> windows_;                                                    ///< of all sorts
-  std::vector<std::size_t> ends_;                      ///< of each sort among them
-  std::vector<math::Pose> before_, geometry_, after_;  ///< of all windows
+  /// All sorts one after the other.
+  std::vector<EvaluationWindow> windows_;
+  std::vector<math::Pose> before_, geometry_, after_;
+  /// Where each sort ends among them.
+  std::vector<std::size_t> ends_;
 };
 
-/// What is judged over windows of one kind.
+/// A figure of the drive, and the windows that it is judged over.
 struct Figure {
   std::size_t kind = 0;  ///< in kKinds
   const char* name;
