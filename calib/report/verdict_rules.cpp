@@ -323,10 +323,15 @@ std::optional<Objection> common_factor(const Calibration& calibration, const Ver
   return objection_to(*cause, std::any_of(lengths.begin(), lengths.end(), is_implausible));
 }
 
-std::optional<Objection> objection_to_deviation(const Length& length) {
+/// @param is_explained something was found beside the lengths, or has a variable
+std::optional<Objection> objection_to_deviation(const Length& length, bool is_explained) {
   if (length.measured > settings::kWarnRelativeDeviation)
     return warning(length.name + " is determined to " + percent(length.measured) +
                        " only; a longer recording would help",
+                   "record longer, and solve again");
+  if (length.relative() > settings::kWarnRelativeDeviation && !is_explained)
+    return warning(length.name + " is known to " + percent(length.relative()) +
+                       " only: something may act that data which were not fitted did not confirm",
                    "record longer, and solve again");
   if (length.relative() > settings::kWarnRelativeDeviation)
     return warning(length.name + " without what was found is known to " + percent(length.relative()) +
@@ -360,8 +365,9 @@ Objections lengths(const Calibration& calibration, const VerdictEvidence& eviden
   const auto factor = names_no_cause(evidence) ? std::nullopt : common_factor(calibration, evidence, all);
   Objections found;
   if (factor) found.push_back(*factor);
+  const bool is_explained = !calibration.effects.empty() || calibration.unexplained;
   for (const Length& length : all) {
-    if (const auto objection = objection_to_deviation(length)) found.push_back(*objection);
+    if (const auto objection = objection_to_deviation(length, is_explained)) found.push_back(*objection);
     if (factor) continue;
     if (const auto objection = objection_to_change(length, evidence)) found.push_back(*objection);
   }

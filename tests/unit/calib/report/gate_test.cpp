@@ -83,7 +83,8 @@ TEST(Gate, warns_of_a_drive_of_which_nothing_was_tested) {
 }
 
 TEST(Gate, accepts_what_only_a_law_of_unknown_shape_makes_uncertain_and_says_so) {
-  const Calibration uncertain = with_track(0.4, 0.0121);
+  Calibration uncertain = with_track(0.4, 0.0121);
+  uncertain.effects.resize(1);
   VerdictEvidence evidence = kFirm;
   evidence.measured = {{"track_width", {0.4, 1e-4, "m"}}};
   const GateResult gate = judge(uncertain, evidence);
@@ -93,6 +94,15 @@ TEST(Gate, accepts_what_only_a_law_of_unknown_shape_makes_uncertain_and_says_so)
       << gate.reasons.front();
   evidence.measured.front().second.std = 0.0121;
   EXPECT_EQ(judge(uncertain, evidence).verdict, Verdict::refused);
+}
+
+TEST(Gate, does_not_speak_of_what_was_found_where_nothing_was) {
+  VerdictEvidence evidence = kFirm;
+  evidence.measured = {{"track_width", {0.4, 1e-4, "m"}}};
+  const GateResult gate = judge(with_track(0.4, 0.0121), evidence);
+  ASSERT_EQ(gate.reasons.size(), 1U);
+  EXPECT_EQ(gate.reasons.front().find("track_width is known to 3.0"), 0U) << gate.reasons.front();
+  EXPECT_EQ(gate.next_step, "record longer, and solve again");
 }
 
 TEST(Gate, warns_of_a_way_that_adds_up_to_more_than_noise) {
