@@ -56,7 +56,7 @@ std::vector<bool> repeats_of(const std::vector<Sample>& samples) {
 }
 
 /// At rest a lidar without noise repeats itself as well: the wheels have to turn meanwhile.
-bool scans_repeat_in_motion(const Recording& recording, const std::vector<bool>& repeats) {
+bool repeats_in_motion(const Recording& recording, const std::vector<bool>& repeats) {
   WheelWay way(recording);
   for (std::size_t k = 1; k < repeats.size(); ++k)
     if (repeats[k] && way.between(recording.scans[k - 1].t, recording.scans[k].t) > settings::kMovedBetween_m)
@@ -68,7 +68,7 @@ double way_between(const PoseSample& a, const PoseSample& b) { return std::hypot
 
 /// A robot that stops slows down before: a value that stays between two steps of motion was sent again. Or
 /// one is held, as by a camera that lost its marker, until it moves again.
-std::vector<bool> repeats_in_motion(const Recording& recording) {
+std::vector<bool> repeated_poses(const Recording& recording) {
   const std::vector<PoseSample>& poses = recording.poses;
   const std::vector<bool> same = repeats_of(poses);
   std::vector<bool> repeats(poses.size(), false);
@@ -113,12 +113,12 @@ std::optional<Recording> without(const Recording& recording, std::vector<Sample>
 
 std::optional<Recording> without_repeated_scans(const Recording& recording) {
   const std::vector<bool> repeats = repeats_of(recording.scans);
-  if (!scans_repeat_in_motion(recording, repeats)) return std::nullopt;
+  if (!repeats_in_motion(recording, repeats)) return std::nullopt;
   return without(recording, &Recording::scans, "scan", repeats);
 }
 
 std::optional<Recording> without_repeated_poses(const Recording& recording) {
-  const std::vector<bool> repeats = repeats_in_motion(recording);
+  const std::vector<bool> repeats = repeated_poses(recording);
   if (std::find(repeats.begin(), repeats.end(), true) == repeats.end()) return std::nullopt;
   return without(recording, &Recording::poses, "pose", repeats);
 }

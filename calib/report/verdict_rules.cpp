@@ -329,15 +329,14 @@ std::optional<Objection> objection_to_deviation(const Length& length, bool is_ex
     return warning(length.name + " is determined to " + percent(length.measured) +
                        " only; a longer recording would help",
                    "record longer, and solve again");
-  if (length.relative() > settings::kWarnRelativeDeviation && !is_explained)
+  if (!(length.relative() > settings::kWarnRelativeDeviation)) return std::nullopt;
+  if (!is_explained)
     return warning(length.name + " is known to " + percent(length.relative()) +
                        " only: something may act that data which were not fitted did not confirm",
                    "record longer, and solve again");
-  if (length.relative() > settings::kWarnRelativeDeviation)
-    return warning(length.name + " without what was found is known to " + percent(length.relative()) +
-                       " only: how that goes on where it was not seen, this recording does not show",
-                   "use the lengths for motion like the recorded one only");
-  return std::nullopt;
+  return warning(length.name + " without what was found is known to " + percent(length.relative()) +
+                     " only: how that goes on where it was not seen, this recording does not show",
+                 "use the lengths for motion like the recorded one only");
 }
 
 std::optional<Objection> objection_to_change(const Length& length, const VerdictEvidence& evidence) {

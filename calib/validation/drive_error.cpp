@@ -135,7 +135,10 @@ class Judge {
  public:
   Judge(std::span<const measurement::FitData> data, const wheels::BaseParameters& nominal,
         const JudgedModel* geometry, const JudgedModel& full)
-      : data_(data), full_(full), folds_(folds_of(data)) {
+      : data_(data),
+        full_(full),
+        folds_(folds_of(data)),
+        measured_pairs_(measured_pairs(data, trusted_pairs(*full.fit))) {
     full_parameters_ = by_fold(full);
     if (nominal.left_radius > 0.0 && nominal.right_radius > 0.0 && nominal.track_width > 0.0)
       nominal_parameters_.assign(kFolds, with_wheels(full.fit->parameters, full.effects, nominal));
@@ -145,13 +148,8 @@ class Judge {
             with_wheels(full.fit->parameters, full.effects, vehicle::to_base(vehicle::as_span(p))));
   }
 
-  void add(WindowKind kind) {
-    append(find_windows(kind, data_, folds_, *full_.fit, measured_pairs(data_, trusted_pairs(*full_.fit))));
-  }
-  void add_way(double way) {
-    append(find_windows_of_way(way, data_, folds_, *full_.fit,
-                               measured_pairs(data_, trusted_pairs(*full_.fit))));
-  }
+  void add(WindowKind kind) { append(find_windows(kind, data_, folds_, *full_.fit, measured_pairs_)); }
+  void add_way(double way) { append(find_windows_of_way(way, data_, folds_, *full_.fit, measured_pairs_)); }
 
   /// Each model goes along each recording once, for the windows of all sorts that were added.
   void judge() {
@@ -194,6 +192,7 @@ class Judge {
   std::span<const measurement::FitData> data_;
   const JudgedModel& full_;
   std::vector<std::size_t> folds_;
+  std::vector<bool> measured_pairs_;  ///< one flag per pair
   std::vector<Eigen::VectorXd> nominal_parameters_, geometry_parameters_, full_parameters_;  ///< by fold
   /// All sorts one after the other.
   std::vector<EvaluationWindow> windows_;
