@@ -5,6 +5,7 @@
 #include <numeric>
 
 #include "calib/classical/settings.hpp"
+#include "calib/math/linear_solve.hpp"
 #include "calib/math/vector2.hpp"
 
 namespace odomcalib::calib::classical {
@@ -27,13 +28,13 @@ Result<Eigen::Vector2d> solve_rotation(std::span<const wheels::WheelMotion> samp
     normal += wheels * wheels.transpose();
     right_side += wheels * samples[i].sensor_motion.yaw;
   }
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> eigen(normal);
-  if (!(eigen.eigenvalues()(0) * settings::kMostConditionOfRotation * settings::kMostConditionOfRotation >
-        eigen.eigenvalues()(1)))
+  const math::Eigensystem eigen = math::eigensystem(normal);
+  if (!(eigen.values(0) * settings::kMostConditionOfRotation * settings::kMostConditionOfRotation >
+        eigen.values(1)))
     return underdetermined("the wheels always turned in the same proportion",
                            "straight lines and turns on the spot in one drive");
-  return Eigen::Vector2d(eigen.eigenvectors() * (eigen.eigenvalues().cwiseInverse().asDiagonal() *
-                                                 (eigen.eigenvectors().transpose() * right_side)));
+  return Eigen::Vector2d(
+      eigen.vectors * (eigen.values.cwiseInverse().asDiagonal() * (eigen.vectors.transpose() * right_side)));
 }
 
 /// Quadratic form in (b, l_x, l_y, cos l_yaw, sin l_yaw) of the rewritten residual l (+) s (-) r (-) l: eq.
@@ -63,8 +64,7 @@ std::optional<Vector5> solution_for(const Matrix5& form, double lambda) {
   Matrix5 shifted = form;
   shifted(3, 3) += lambda;
   shifted(4, 4) += lambda;
-  const Eigen::JacobiSVD<Matrix5> svd(shifted, Eigen::ComputeFullV);
-  Vector5 x = svd.matrixV().col(4);
+  Vector5 x = math::null_vector(shifted);
   const double norm = std::hypot(x(3), x(4));
   if (!(norm > 1e-12)) return std::nullopt;
   x *= (x(0) < 0.0 ? -1.0 : 1.0) / norm;
@@ -74,17 +74,18 @@ std::optional<Vector5> solution_for(const Matrix5& form, double lambda) {
 /// Minimum of x^T M x with |(x4, x5)| = 1. Eliminating b, l_x, l_y leaves a 2x2 eigenproblem whose two
 /// eigenvalues are the two multipliers of the paper; both are evaluated and the better one is taken.
 Result<Vector5> minimise_on_circle(const Matrix5& form) {
-  const Eigen::Matrix3d a = form.topLeftCorner<3, 3>();
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> conditioning(a);
-  if (!(conditioning.eigenvalues()(0) > 1e-12 * conditioning.eigenvalues()(2)))
+  const Eigen::MatrixXd a = form.topLeftCorner<3, 3>();
+  const Eigen::VectorXd squares = math::eigensystem(a).values;
+  if (!(squares(0) > 1e-12 * squares(2)))
     return underdetermined("track width and sensor position cannot be separated",
                            "turns on the spot both ways");
-  const Eigen::Matrix<double, 3, 2> b = form.topRightCorner<3, 2>();
-  const Eigen::Matrix2d reduced = form.bottomRightCorner<2, 2>() - b.transpose() * a.ldlt().solve(b);
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> eigen(reduced);
+  const Eigen::MatrixXd b = form.topRightCorner<3, 2>();
+  const Eigen::Matrix2d reduced =
+      form.bottomRightCorner<2, 2>() - b.transpose() * math::solve_symmetric(a, b);
+  const Eigen::VectorXd multipliers = math::eigensystem(reduced).values;
   std::optional<Vector5> best;
   for (int k = 0; k < 2; ++k) {
-    const auto x = solution_for(form, -eigen.eigenvalues()(k));
+    const auto x = solution_for(form, -multipliers(k));
     if (x && (!best || x->dot(form * *x) < best->dot(form * *best))) best = x;
   }
   if (!best) return underdetermined("the sensor's heading is undetermined", "straight lines");
@@ -173,13 +174,13 @@ Eigen::Matrix<double, 3, 6> numeric_jacobian(const wheels::BaseParameters& p,
 Eigen::Matrix<double, 6, 6> parameter_covariance(std::span<const wheels::WheelMotion> samples,
                                                  const Indices& used, const wheels::BaseParameters& p,
                                                  const Eigen::Vector3d& noise) {
-  Eigen::Matrix<double, 6, 6> information = Eigen::Matrix<double, 6, 6>::Zero();
+  Eigen::MatrixXd information = Eigen::MatrixXd::Zero(6, 6);
   for (const std::size_t i : used) {
     const Eigen::Matrix<double, 3, 6> scaled =
         noise.cwiseInverse().asDiagonal() * numeric_jacobian(p, samples[i]);
     information += scaled.transpose() * scaled;
   }
-  return information.ldlt().solve(Eigen::Matrix<double, 6, 6>::Identity());
+  return math::solve_symmetric(information, Eigen::MatrixXd(Eigen::MatrixXd::Identity(6, 6)));
 }
 
 }  // namespace

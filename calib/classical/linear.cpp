@@ -40,7 +40,7 @@ Error too_few_directions(const Eigen::MatrixX3d& odometry) {
 Eigen::Matrix3d solution(const Eigen::MatrixX3d& odometry, const Eigen::MatrixX3d& observed,
                          LinearSolver solver) {
   if (solver == LinearSolver::svd) return math::solve_least_squares(odometry, observed);
-  if (solver == LinearSolver::qr) return Eigen::HouseholderQR<Eigen::MatrixX3d>(odometry).solve(observed);
+  if (solver == LinearSolver::qr) return math::solve_independent(odometry, observed);
   const Eigen::Matrix3d normal = odometry.transpose() * odometry;
   const Eigen::Matrix3d mixed = odometry.transpose() * observed;
   if (solver == LinearSolver::ldlt) return math::solve_symmetric(normal, mixed);
@@ -71,8 +71,8 @@ Result<LinearResult> solve_linear(std::span<const IncrementPair> samples, Linear
   if (!odometry.allFinite() || !observed.allFinite())
     return Error{ErrorCode::refused, "an increment is not finite", "linear method", "check the recording"};
   if (samples.size() < 3) return too_few_directions(odometry);
-  const Eigen::JacobiSVD<Eigen::MatrixX3d> svd(odometry);
-  const double ratio = svd.singularValues()(2) / svd.singularValues()(0);
+  const Eigen::VectorXd singular = math::singular_values(odometry);
+  const double ratio = singular(2) / singular(0);
   if (!(ratio > kColumnTolerance)) return too_few_directions(odometry);
   LinearResult result;
   result.condition = 1.0 / (ratio * ratio);

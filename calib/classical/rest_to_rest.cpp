@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "calib/classical/settings.hpp"
+#include "calib/math/linear_solve.hpp"
 
 namespace odomcalib::calib::classical {
 namespace {
@@ -99,7 +100,7 @@ ExactErrors solve_exactly(const SquarePair& pair, const wheels::BaseParameters& 
       const Unknowns step = kStep * Unknowns::Unit(i);
       jacobian.col(i) = (misses(pair, used, x + step) - misses(pair, used, x - step)) / (2.0 * kStep);
     }
-    const Unknowns change = jacobian.householderQr().solve(-misses(pair, used, x));
+    const Unknowns change = math::solve_independent(jacobian, -misses(pair, used, x));
     x += change;
     if (change.norm() < kSmallStep) break;
   }

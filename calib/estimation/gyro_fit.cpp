@@ -159,7 +159,7 @@ Line line_of(const Turns& turns, const std::vector<Row>& rows) {
     a.row(k) << turns.wheels(row.turn), row.duration;
     b(k) = row.read;
   }
-  const Eigen::Vector2d x = a.colPivHouseholderQr().solve(b);
+  const Eigen::Vector2d x = math::solve_independent(a, b);
   const double left = (b - a * x).squaredNorm();
   const Eigen::VectorXd duration = a.col(1);
   const double of_bias = (b - duration * (duration.dot(b) / duration.squaredNorm())).squaredNorm();
@@ -245,7 +245,7 @@ System system_of(const Turns& turns, const std::vector<Row>& rows) {
 
 Noise noise_of(const Turns& turns, const std::vector<Row>& rows, const System& system) {
   const Eigen::VectorXd left =
-      system.beyond - system.of_gyro * system.of_gyro.colPivHouseholderQr().solve(system.beyond);
+      system.beyond - system.of_gyro * math::solve_independent(system.of_gyro, system.beyond);
   double both = 0.0, lidar = 0.0;
   std::vector<double> errors;
   for (const Row& row : rows)
@@ -284,7 +284,7 @@ void whiten(const Turns& turns, const std::vector<Row>& rows, const Noise& noise
     system.of_gyro.row(row) *= weight;
   }
   const Eigen::VectorXd left =
-      system.beyond - system.of_gyro * system.of_gyro.colPivHouseholderQr().solve(system.beyond);
+      system.beyond - system.of_gyro * math::solve_independent(system.of_gyro, system.beyond);
   for (Eigen::Index k = 0; k < left.size(); ++k)
     if (std::abs(left(k)) > settings::kOutlier) {
       system.beyond(k) = 0.0;

@@ -67,7 +67,7 @@ bool repeats_in_motion(const Recording& recording, const std::vector<bool>& repe
 double way_between(const PoseSample& a, const PoseSample& b) { return std::hypot(b.x - a.x, b.y - a.y); }
 
 /// A robot that stops slows down before: a value that stays between two steps of motion was sent again. Or
-/// one is held, as by a camera that lost its marker, until it moves again.
+/// one is held, as by a camera that lost its marker. Where all are one value, that is for the checks to say.
 std::vector<bool> repeated_poses(const Recording& recording) {
   const std::vector<PoseSample>& poses = recording.poses;
   const std::vector<bool> same = repeats_of(poses);
@@ -77,9 +77,9 @@ std::vector<bool> repeated_poses(const Recording& recording) {
     if (!same[k] || same[k - 1]) continue;
     std::size_t next = k;
     while (next < poses.size() && same[next]) ++next;
-    if (next == poses.size()) break;
+    if (k == 1 && next == poses.size()) break;
     const bool is_sent_again =
-        k >= 2 && next - k <= settings::kMostRepeats &&
+        k >= 2 && next < poses.size() && next - k <= settings::kMostRepeats &&
         std::min(way_between(poses[k - 2], poses[k - 1]), way_between(poses[next - 1], poses[next])) >=
             settings::kMovedBetween_m;
     if (!is_sent_again && way.between(poses[k - 1].t, poses[next - 1].t) < settings::kRolledWhileHeld_m)

@@ -42,6 +42,14 @@ Eigen::MatrixXd solve_least_squares(const Eigen::MatrixXd& a, const Eigen::Matri
   return Eigen::JacobiSVD<Eigen::MatrixXd>(a, Eigen::ComputeThinU | Eigen::ComputeThinV).solve(b);
 }
 
+Eigen::MatrixXd solve_independent(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b) {
+  return Eigen::ColPivHouseholderQR<Eigen::MatrixXd>(a).solve(b);
+}
+
+Eigen::VectorXd null_vector(const Eigen::MatrixXd& a) {
+  return Eigen::JacobiSVD<Eigen::MatrixXd>(a, Eigen::ComputeFullV).matrixV().rightCols(1);
+}
+
 Eigen::MatrixXd orthonormal_basis(const Eigen::MatrixXd& columns, double least) {
   const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(columns);
   Eigen::Index rank = 0;

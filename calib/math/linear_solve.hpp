@@ -30,6 +30,12 @@ Eigen::VectorXd singular_values(const Eigen::MatrixXd& a);
 /// Least squares: x that makes |a x - b| least, by the singular values of a.
 Eigen::MatrixXd solve_least_squares(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b);
 
+/// The same for columns that are independent, by QR with pivoting of columns.
+Eigen::MatrixXd solve_independent(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b);
+
+/// x of unit length that makes |a x| least, by the singular values of a.
+Eigen::VectorXd null_vector(const Eigen::MatrixXd& a);
+
 /// Orthonormal basis of the columns: directions of less than this length are left out.
 Eigen::MatrixXd orthonormal_basis(const Eigen::MatrixXd& columns, double least);
 

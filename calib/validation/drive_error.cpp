@@ -127,8 +127,10 @@ double noise_floor(Part part, std::span<const EvaluationWindow> windows) {
 
 /// Windows of one sort, and the errors of each model in them; none of a model that there is not.
 struct Judged {
-  std::span<const EvaluationWindow> windows;
-  std::span<const math::Pose> before, geometry, after;
+  std::vector<EvaluationWindow> windows;
+  std::vector<math::Pose> before, geometry, after;
+
+  [[nodiscard]] bool is_enough() const { return windows.size() >= settings::kFewestOfAKind; }
 };
 
 class Judge {
@@ -148,38 +150,41 @@ class Judge {
             with_wheels(full.fit->parameters, full.effects, vehicle::to_base(vehicle::as_span(p))));
   }
 
-  void add(WindowKind kind) { append(find_windows(kind, data_, folds_, *full_.fit, measured_pairs_)); }
-  void add_way(double way) { append(find_windows_of_way(way, data_, folds_, *full_.fit, measured_pairs_)); }
-
-  /// Each model goes along each recording once, for the windows of all sorts that were added.
-  void judge() {
-    const auto measured = measured_motions(data_, windows_, full_parameters_, full_.effects);
-    before_ = errors(measured, nominal_parameters_);
-    geometry_ = errors(measured, geometry_parameters_);
-    after_ = errors(measured, full_parameters_);
+  [[nodiscard]] std::vector<EvaluationWindow> windows(WindowKind kind) const {
+    return find_windows(kind, data_, folds_, *full_.fit, measured_pairs_);
+  }
+  [[nodiscard]] std::vector<EvaluationWindow> windows_of_way(double way) const {
+    return find_windows_of_way(way, data_, folds_, *full_.fit, measured_pairs_);
   }
 
-  /// @param sort in the order in which they were added; nullopt where there are too few windows of it
-  [[nodiscard]] std::optional<Judged> of(std::size_t sort) const {
-    const std::size_t begin = sort == 0 ? 0 : ends_[sort - 1], count = ends_[sort] - begin;
-    if (count < settings::kFewestOfAKind) return std::nullopt;
-    const auto part = [&](const std::vector<math::Pose>& errors) {
-      return errors.empty() ? std::span<const math::Pose>() : std::span(errors).subspan(begin, count);
-    };
-    return Judged{std::span(windows_).subspan(begin, count), part(before_), part(geometry_), part(after_)};
+  /// Each model goes along each recording once, for the windows of all sorts.
+  [[nodiscard]] std::vector<Judged> judged(const std::vector<std::vector<EvaluationWindow>>& sorts) const {
+    std::vector<EvaluationWindow> all;
+    for (const auto& windows : sorts) all.insert(all.end(), windows.begin(), windows.end());
+    const auto measured = measured_motions(data_, all, full_parameters_, full_.effects);
+    const auto before = errors(all, measured, nominal_parameters_);
+    const auto geometry = errors(all, measured, geometry_parameters_);
+    const auto after = errors(all, measured, full_parameters_);
+    std::vector<Judged> judged;
+    std::ptrdiff_t begin = 0;
+    for (const auto& windows : sorts) {
+      const std::ptrdiff_t end = begin + std::ssize(windows);
+      const auto part = [&](const std::vector<math::Pose>& errors) {
+        return errors.empty() ? errors : std::vector(errors.begin() + begin, errors.begin() + end);
+      };
+      judged.push_back({windows, part(before), part(geometry), part(after)});
+      begin = end;
+    }
+    return judged;
   }
 
  private:
-  void append(const std::vector<EvaluationWindow>& windows) {
-    windows_.insert(windows_.end(), windows.begin(), windows.end());
-    ends_.push_back(windows_.size());
-  }
-
   /// Empty without parameters.
-  [[nodiscard]] std::vector<math::Pose> errors(const std::vector<math::Pose>& measured,
+  [[nodiscard]] std::vector<math::Pose> errors(const std::vector<EvaluationWindow>& windows,
+                                               const std::vector<math::Pose>& measured,
                                                const std::vector<Eigen::VectorXd>& parameters) const {
     if (parameters.empty()) return {};
-    return errors_of(data_, windows_, measured, parameters, full_.effects);
+    return errors_of(data_, windows, measured, parameters, full_.effects);
   }
 
   [[nodiscard]] std::vector<Eigen::VectorXd> by_fold(const JudgedModel& model) const {
@@ -194,11 +199,6 @@ class Judge {
   std::vector<std::size_t> folds_;
   std::vector<bool> measured_pairs_;  ///< one flag per pair
   std::vector<Eigen::VectorXd> nominal_parameters_, geometry_parameters_, full_parameters_;  ///< by fold
-  /// All sorts one after the other.
-  std::vector<EvaluationWindow> windows_;
-  std::vector<math::Pose> before_, geometry_, after_;
-  /// Where each sort ends among them.
-  std::vector<std::size_t> ends_;
 };
 
 /// A figure of the drive, and the windows that it is judged over.
@@ -257,24 +257,25 @@ Eigen::VectorXd with_wheels(const Eigen::VectorXd& full, const vehicle::EffectLi
 std::vector<DriveError> drive_errors(std::span<const measurement::FitData> data,
                                      const wheels::BaseParameters& nominal, const JudgedModel* geometry,
                                      const JudgedModel& full) {
-  Judge judge(data, nominal, geometry, full);
-  for (const WindowKind kind : kKinds) judge.add(kind);
-  judge.judge();
+  const Judge judge(data, nominal, geometry, full);
+  std::vector<std::vector<EvaluationWindow>> windows;
+  for (const WindowKind kind : kKinds) windows.push_back(judge.windows(kind));
+  const std::vector<Judged> judged = judge.judged(windows);
   std::vector<DriveError> errors;
   for (const Figure& figure : kFigures)
-    if (const auto judged = judge.of(figure.kind)) errors.push_back(drive_error(figure, *judged));
+    if (judged[figure.kind].is_enough()) errors.push_back(drive_error(figure, judged[figure.kind]));
   return errors;
 }
 
 std::vector<ErrorGrowth> error_growth(std::span<const measurement::FitData> data,
                                       const wheels::BaseParameters& nominal, const JudgedModel* geometry,
                                       const JudgedModel& full) {
-  Judge judge(data, nominal, geometry, full);
-  for (const double way : settings::kWays_m) judge.add_way(way);
-  judge.judge();
+  const Judge judge(data, nominal, geometry, full);
+  std::vector<std::vector<EvaluationWindow>> windows;
+  for (const double way : settings::kWays_m) windows.push_back(judge.windows_of_way(way));
   std::vector<ErrorGrowth> growth;
-  for (std::size_t k = 0; k < settings::kWays_m.size(); ++k)
-    if (const auto judged = judge.of(k)) growth.push_back(growth_over(*judged));
+  for (const Judged& judged : judge.judged(windows))
+    if (judged.is_enough()) growth.push_back(growth_over(judged));
   return growth;
 }
 

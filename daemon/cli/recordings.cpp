@@ -4,9 +4,11 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <cmath>
 
 #include "daemon/cli/options.hpp"
 #include "daemon/cli/output.hpp"
+#include "daemon/cli/settings.hpp"
 #include "daemon/config/robot_file.hpp"
 #include "proto/visible_text.hpp"
 
@@ -14,26 +16,35 @@ namespace odomcalib::cli {
 
 namespace {
 
+/// Whether each sample of one is among those of the other, at the same time; both in order of time.
+/// @param later s, by which times of the other count from later
 template <typename Sample, typename Same>
-bool all_same(const std::vector<Sample>& a, const std::vector<Sample>& b, Same same) {
-  const auto at_once = [&](const Sample& x, const Sample& y) { return x.t == y.t && same(x, y); };
-  return !a.empty() && std::equal(a.begin(), a.end(), b.begin(), b.end(), at_once);
+bool all_among(const std::vector<Sample>& one, const std::vector<Sample>& other, double later, Same same) {
+  auto from = other.begin();
+  return !one.empty() && std::all_of(one.begin(), one.end(), [&](const Sample& x) {
+    from = std::find_if(from, other.end(), [&](const Sample& y) {
+      return std::abs(y.t - x.t + later) < settings::kSameTime_s && same(x, y);
+    });
+    return from != other.end() && from++ != other.end();
+  });
 }
 
 /// The same counts, scans or reference poses at the same times.
-bool same_samples(const Recording& a, const Recording& b) {
-  return all_same(a.ticks, b.ticks,
-                  [](const auto& x, const auto& y) { return x.left == y.left && x.right == y.right; }) ||
-         all_same(a.scans, b.scans, [](const auto& x, const auto& y) { return x.ranges == y.ranges; }) ||
-         all_same(a.poses, b.poses,
-                  [](const auto& x, const auto& y) { return x.x == y.x && x.y == y.y && x.yaw == y.yaw; });
+bool is_among(const Recording& one, const Recording& other) {
+  const double later = other.time_zero - one.time_zero;
+  return all_among(one.ticks, other.ticks, later,
+                   [](const auto& x, const auto& y) { return x.left == y.left && x.right == y.right; }) ||
+         all_among(one.scans, other.scans, later,
+                   [](const auto& x, const auto& y) { return x.ranges == y.ranges; }) ||
+         all_among(one.poses, other.poses, later,
+                   [](const auto& x, const auto& y) { return x.x == y.x && x.y == y.y && x.yaw == y.yaw; });
 }
 
-/// Packed, with other scans, or with the wheels by another topic, it is still one drive, and one drive is no
-/// independent proof of itself.
+/// Packed, cut, with other scans, or with the wheels by another topic, it is still one drive, and one drive
+/// is no independent proof of itself.
 const Recording* same_drive(const std::vector<Recording>& recordings, const Recording& next) {
   for (const Recording& one : recordings)
-    if (one.sha256 == next.sha256 || same_samples(one, next)) return &one;
+    if (one.sha256 == next.sha256 || is_among(one, next) || is_among(next, one)) return &one;
   return nullptr;
 }
 
@@ -126,8 +137,8 @@ Result<std::vector<Recording>> read_recordings(const std::vector<std::string>& p
     for (const Repair& one : recording.value().repairs)
       tell(fmt::format("{}: {}: {}: {}", path, one.what, one.chosen, one.reason));
     if (const Recording* one = same_drive(recordings, recording.value()))
-      return Error{ErrorCode::usage, "holds the same drive as \"" + one->name + "\"", path,
-                   "name every recording once"};
+      return Error{ErrorCode::usage, "holds the same drive as \"" + one->name + "\", or a part of it", path,
+                   "name every drive once, as a whole"};
     recordings.push_back(with_nominal(std::move(recording).value(), robot.value()));
   }
   return recordings;

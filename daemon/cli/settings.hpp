@@ -33,6 +33,11 @@ inline constexpr std::size_t kMostOwnFile_bytes = 16'000'000;
 /// mounted.
 inline constexpr double kLevelLidar = 0.966;
 
+// --- Recordings given together ---------------------------------------------------------------------------
+
+/// s, that one time differs by between two files. Derived: a double has steps of 0.24 us since 1970.
+inline constexpr double kSameTime_s = 1e-6;
+
 // --- Inspection of a recording ---------------------------------------------------------------------------
 
 /// m, and counts of a wheel's turn, of a robot of which nobody stated them: what kinds of motion there are

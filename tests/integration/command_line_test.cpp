@@ -12,6 +12,7 @@
 #include <fstream>
 #include <functional>
 #include <nlohmann/json.hpp>
+#include <sstream>
 #include <thread>
 
 #include "daemon/service/control_server.hpp"
@@ -381,6 +382,21 @@ TEST_F(CommandLine, one_drive_given_twice_is_refused) {
     const auto got = ctl("solve drive.jsonl --out out.json " + second);
     EXPECT_EQ(got.status, 2) << second << got.err;
     EXPECT_THAT(got.err, HasSubstr("same drive")) << second;
+  }
+  // Cut out of it, and counting from another second.
+  std::istringstream whole(read("drive.jsonl"));
+  std::string part;
+  for (std::string text; std::getline(whole, text);) {
+    json line = json::parse(text);
+    if (line.at("type") == "robot") line["time_zero"] = 2.0;
+    if (line.contains("t")) line["t"] = line.at("t").get<double>() - 2.0;
+    if (line.value("t", 0.0) >= 0.0 && line.value("t", 0.0) < 4.05) part += line.dump() + "\n";
+  }
+  write("part.jsonl", part);
+  for (const std::string both : {"drive.jsonl part.jsonl", "part.jsonl drive.jsonl"}) {
+    const auto got = ctl("solve --out out.json " + both);
+    EXPECT_EQ(got.status, 2) << both << got.err;
+    EXPECT_THAT(got.err, HasSubstr("or a part of it")) << both;
   }
   write("later.jsonl", recording(1000.0));
   EXPECT_NE(ctl("solve drive.jsonl later.jsonl").status, 2);
