@@ -298,25 +298,33 @@ class Look {
                  "stamp both with the same clock, or subtract the difference"};
   }
 
-  [[nodiscard]] std::optional<classical::LengthRatios> ratios(const std::vector<WheelMotion>& motions) const {
+  struct Lengths {
+    classical::LengthRatios ratios;
+    double left_m;  ///< RMS of the places that they leave unexplained
+  };
+
+  [[nodiscard]] std::optional<Lengths> lengths(const std::vector<WheelMotion>& motions) const {
     if (motions.size() < settings::kFewestMotions) return std::nullopt;
     const auto fit = classical::solve_closed_form(motions);
     const RobotDescription& robot = recording_.robot;
     if (!fit || !(robot.left_wheel_diameter > 0.0) || !(robot.track_width > 0.0)) return std::nullopt;
     const wheels::BaseParameters& p = fit.value().parameters;
-    return classical::LengthRatios{2.0 * p.left_radius / robot.left_wheel_diameter,
-                                   2.0 * p.right_radius / robot.right_wheel_diameter,
-                                   p.track_width / robot.track_width};
+    return Lengths{{2.0 * p.left_radius / robot.left_wheel_diameter,
+                    2.0 * p.right_radius / robot.right_wheel_diameter, p.track_width / robot.track_width},
+                   fit.value().rms.head<2>().norm()};
   }
 
-  static bool are_nominal(const std::optional<classical::LengthRatios>& r) {
+  static bool are_nominal(const classical::LengthRatios& r) {
     const auto is_near = [](double ratio) { return std::abs(ratio - 1.0) < settings::kNearNominal; };
-    return r && is_near(r->left) && is_near(r->right) && is_near(r->track);
+    return is_near(r.left) && is_near(r.right) && is_near(r.track);
   }
 
-  /// Beams spread wider, or less wide, than they were sent.
+  /// Beams spread wider, or less wide, than they were sent. Lengths that are wrong by the same factor are
+  /// mended by that as well, but the places of scans with beams that were spread wrongly fit them worse.
   [[nodiscard]] std::optional<Cause> stretched_angles() const {
-    if (!recording_.poses.empty() || are_nominal(ratios(motions_))) return std::nullopt;
+    if (!recording_.poses.empty()) return std::nullopt;
+    const auto given = lengths(motions_);
+    if (given && are_nominal(given->ratios)) return std::nullopt;
     for (const double factor : settings::kAngleFactors) {
       Recording mended = recording_;
       mended.scans.resize(std::min(mended.scans.size(), settings::kMostTried));
@@ -326,8 +334,9 @@ class Look {
         for (float& angle : scan.angles) angle = static_cast<float>(angle * factor);
       }
       const auto seen = measurement::reference_motions(mended, settings::kMostTried);
-      if (seen.unmatched > seen.matched || !are_nominal(ratios(beside_wheels(seen.motions, track_))))
-        continue;
+      const auto found = lengths(beside_wheels(seen.motions, track_));
+      if (seen.unmatched > seen.matched || !found || !are_nominal(found->ratios)) continue;
+      if (given && given->left_m < found->left_m) continue;
       return Cause{"angles of the scans are " + number(1.0 / factor) + " times as wide as they are: with " +
                        number(factor) +
                        " times angle_increment all lengths come out near their nominal values",
@@ -337,9 +346,9 @@ class Look {
   }
 
   [[nodiscard]] std::optional<Cause> length_factor(const std::vector<WheelMotion>& motions) const {
-    const auto found = ratios(motions);
+    const auto found = lengths(motions);
     if (!found || explained_ < settings::kContradicts) return std::nullopt;
-    return cause_of_ratios(*found, {recording_.robot, recording_.motion, !recording_.poses.empty()});
+    return cause_of_ratios(found->ratios, {recording_.robot, recording_.motion, !recording_.poses.empty()});
   }
 
   /// Odometry in another unit of length has the right turns, beside which its ways are too long or too short

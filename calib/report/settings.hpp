@@ -71,6 +71,12 @@ inline constexpr double kOneSided = 0.2;
 inline constexpr double kWarnResidual = 2.0;
 /// Times the nominal values' error, of an error that has not become smaller. Chosen, insensitive.
 inline constexpr double kNoBetter = 1.0;
+/// Share of a count's step at the rim, and m, that poses are off by over ten seconds which are computed of
+/// the wheels. Derived: those of counts agree to rounding, those of anything else are off by some steps;
+/// kRounding_m is what numbers with five decimals are rounded to. Measured: 3 um, and above 1.5 mm in real
+/// recordings.
+inline constexpr double kShareOfStep = 0.2;
+inline constexpr double kRounding_m = 1e-5;
 /// Times the noise, of an error with the nominal values that there was something to gain from. Chosen: 1.2 is
 /// what a metre of the MinesRover recordings shows.
 inline constexpr double kWorthGaining = 1.2;

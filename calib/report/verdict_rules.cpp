@@ -96,6 +96,23 @@ Objections no_better_than_before(const Calibration&, const VerdictEvidence& evid
   return found;
 }
 
+/// Poses that were computed of the wheels agree with these to rounding, whatever values they were computed
+/// with. Counts have steps, which anything else that measures is off by.
+Objections poses_of_wheels(const Calibration& calibration, const VerdictEvidence& evidence) {
+  const DriveError* error = validation::open_loop_position(evidence.drive_errors);
+  if (!evidence.of_poses || error == nullptr || !error->after) return {};
+  const RobotDescription& robot = calibration.robot;
+  const bool is_counted = evidence.motion == MotionSource::ticks && robot.ticks_per_rev > 0.0;
+  const double step = is_counted ? math::kPi * robot.left_wheel_diameter / robot.ticks_per_rev : 0.0;
+  const double limit = std::max(settings::kShareOfStep * step, settings::kRounding_m);
+  if (!(error->after->value < limit)) return {};
+  const std::string reason =
+      "the poses agree with the wheels to " + math::millimetres_text(error->after->value) +
+      " over ten seconds, as only poses do that are computed of the wheels (odometry): they show nothing of "
+      "the robot; record poses that something else measures, or leave them out where there are scans";
+  return {is_counted ? refusal(reason) : warning(reason)};
+}
+
 Objections still_off(const Calibration&, const VerdictEvidence& evidence) {
   Objections found;
   for (const DriveFigure& figure : kDriveFigures) {
@@ -600,6 +617,8 @@ Objections several_signs(const Calibration& calibration, const VerdictEvidence& 
 constexpr std::array kRules = {
     VerdictRule{"much_left_out", kMendLosses, much_left_out},
     VerdictRule{"no_better_than_before", "keep the old values", no_better_than_before},
+    VerdictRule{"poses_of_wheels", "record poses that something else measures, or scans, and solve again",
+                poses_of_wheels},
     VerdictRule{"recordings_disagree",
                 "solve recordings before and after a change of tyres, load or lidar separately",
                 recordings_disagree},

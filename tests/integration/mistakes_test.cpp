@@ -14,6 +14,7 @@
 #include "calib/solve.hpp"
 #include "daemon/cli/exit_codes.hpp"
 #include "proto/recording/recording.hpp"
+#include "tests/sim/world/rooms.hpp"
 #include "tests/sim/world/simulate.hpp"
 
 namespace odomcalib::mistakes_test {
@@ -43,6 +44,27 @@ Recording with_poses() {
   for (const sim::TruthSample& sample : plain_run().path)
     recording.poses.push_back({sample.t, sample.pose.x + noise(engine), sample.pose.y + noise(engine),
                                sample.pose.yaw + noise(engine)});
+  return recording;
+}
+
+/// The same drive with the robot's own odometry, by the nominal lengths, as reference instead of scans.
+Recording with_own_odometry() {
+  Recording recording = plain_run().recording;
+  recording.scans.clear();
+  const RobotDescription& robot = recording.robot;
+  double x = 0.0, y = 0.0, yaw = 0.0;
+  for (std::size_t k = 1; k < recording.ticks.size(); ++k) {
+    const TickSample &from = recording.ticks[k - 1], &to = recording.ticks[k];
+    const double left = kPi * robot.left_wheel_diameter * static_cast<double>(to.left - from.left) /
+                        robot.ticks_per_rev,
+                 right = kPi * robot.right_wheel_diameter * static_cast<double>(to.right - from.right) /
+                         robot.ticks_per_rev;
+    const double turn = (right - left) / robot.track_width;
+    x += 0.5 * (left + right) * std::cos(yaw + 0.5 * turn);
+    y += 0.5 * (left + right) * std::sin(yaw + 0.5 * turn);
+    yaw += turn;
+    recording.poses.push_back({to.t, x, y, std::remainder(yaw, 2.0 * kPi)});
+  }
   return recording;
 }
 
@@ -164,6 +186,16 @@ Edit diameters(double factor) {
     robot.left_wheel_diameter *= factor;
     robot.right_wheel_diameter *= factor;
   });
+}
+
+/// Of a drive whose lengths come out near their nominal values with half of the angle between beams as well.
+void diameter_is_radius(Recording& r) {
+  sim::SimulationConfig config = sim::standard_config(11);
+  config.room = sim::random_room(11);
+  config.lidar.beams_per_turn = 360;
+  config.duration = sim::total_duration(sim::lazy_pattern());
+  r = sim::simulate_recording(config, sim::follow(config.nominal, sim::lazy_pattern())).recording;
+  diameters(0.48)(r);
 }
 
 Edit lengths(double factor) {
@@ -301,6 +333,8 @@ const std::vector<Mistake>& mistakes() {
        "wheel_diameter to 0.15 m"},
       {"lengths_in_inches", lengths(1.0 / 0.0254), "wheel_diameter and track_width are in inches", "tape"},
       {"radius", diameters(0.5), "the radius was given as diameter", "wheel_diameter to 0.15 m", cli::kDone},
+      {"diameter_is_radius", diameter_is_radius, "the radius was given as diameter",
+       "wheel_diameter to 0.14"},
       {"circumference", diameters(kPi), "the circumference was given as diameter",
        "wheel_diameter to 0.15 m"},
       {"half_track", track(0.5), "track_width comes out 1.9.*middle of the robot to a wheel",
@@ -375,6 +409,8 @@ const std::vector<Mistake>& mistakes() {
        cli::kRefused, true},
       {"pose_of_a_quaternion", poses([](PoseSample& p) { p.yaw *= 0.5; }), "half of the heading", "atan2",
        cli::kRefused, true},
+      {"poses_are_odometry", [](Recording& r) { r = with_own_odometry(); }, "computed of the wheels",
+       "something else measures", cli::kRefused, true},
       {"poses_in_mm", poses([](PoseSample& p) { p.x *= 1e3, p.y *= 1e3; }), "in millimetres",
        "x and y of the poses", cli::kRefused, true},
       {"poses_in_cm", poses([](PoseSample& p) { p.x *= 1e2, p.y *= 1e2; }), "in centimetres",

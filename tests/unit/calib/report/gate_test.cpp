@@ -1,16 +1,22 @@
 #include "calib/report/gate.hpp"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <array>
 #include <cmath>
 #include <limits>
 
+#include "calib/math/se2.hpp"
 #include "calib/report/settings.hpp"
 #include "calib/report/verdict_rules.hpp"
 
 namespace odomcalib::calib::report::gate_test {
 namespace {
+
+using ::testing::Contains;
+using ::testing::HasSubstr;
+using ::testing::Not;
 
 /// All as it should be.
 Calibration sound() {
@@ -141,6 +147,30 @@ TEST(Gate, refuses_where_nothing_that_was_off_is_better) {
   EXPECT_EQ(driven({figure("straight_metre_length", 0.0468, 0.0460)}).reasons.size(), 1U) << "better";
   EXPECT_EQ(driven({figure("straight_metre_length", 0.0310, 0.0320)}).reasons.size(), 1U)
       << "there was nothing to gain";
+}
+
+TEST(Gate, refuses_poses_that_are_computed_of_the_counts) {
+  Calibration robot = with_track(0.4, 0.0021);
+  robot.robot.ticks_per_rev = 4096.0;
+  const auto seen = [&](double after, MotionSource motion, bool of_poses) {
+    VerdictEvidence evidence = kFirm;
+    evidence.drive_errors = {figure("open_loop_10s_position", 0.05, after)};
+    evidence.motion = motion;
+    evidence.of_poses = of_poses;
+    return judge(robot, evidence);
+  };
+  const GateResult gate = seen(3e-6, MotionSource::ticks, true);
+  EXPECT_EQ(gate.verdict, Verdict::refused);
+  EXPECT_THAT(gate.reasons.front(), HasSubstr("to 0.003 mm over ten seconds"));
+  EXPECT_THAT(gate.next_step, HasSubstr("poses that something else measures"));
+  const double step = math::kPi * robot.robot.left_wheel_diameter / robot.robot.ticks_per_rev;
+  EXPECT_EQ(seen(0.19 * step, MotionSource::ticks, true).verdict, Verdict::refused);
+  EXPECT_NE(seen(0.21 * step, MotionSource::ticks, true).verdict, Verdict::refused);
+  EXPECT_NE(seen(3e-6, MotionSource::ticks, false).verdict, Verdict::refused) << "scans";
+  EXPECT_THAT(seen(3e-6, MotionSource::wheels, true).reasons, Contains(HasSubstr("computed of the wheels")));
+  EXPECT_NE(seen(3e-6, MotionSource::wheels, true).verdict, Verdict::refused) << "an exact simulation";
+  EXPECT_THAT(seen(2e-5, MotionSource::wheels, true).reasons,
+              Not(Contains(HasSubstr("computed of the wheels"))));
 }
 
 TEST(Gate, warns_of_one_figure_that_is_no_better_where_another_is) {
