@@ -111,6 +111,18 @@ Error wrong(const Recording& recording, double share, const std::string& what, c
           recording.name, remedy};
 }
 
+/// m that every x and y is a multiple of, of those that bend steps plainly; 0 where there is none.
+double rounding_of(const std::vector<PoseSample>& poses) {
+  const auto is_multiple = [](double value, double unit) {
+    return std::abs(value / unit - std::round(value / unit)) < settings::kOfARounding;
+  };
+  for (const double unit : settings::kRoundings_m)
+    if (std::all_of(poses.begin(), poses.end(),
+                    [&](const PoseSample& p) { return is_multiple(p.x, unit) && is_multiple(p.y, unit); }))
+      return unit;
+  return 0.0;
+}
+
 using Change = PoseSample (*)(PoseSample);
 
 struct Mistake {
@@ -269,12 +281,18 @@ std::optional<Error> wrong_odometry_frame(const Recording& recording) {
   if (steps.size() < settings::kFewestPoseSteps) return std::nullopt;
   const auto sideways = sideways_of(steps);
   if (!sideways) return std::nullopt;
-  if (sideways->unexplained > settings::kAsideUnexplained)
+  if (sideways->unexplained > settings::kAsideUnexplained) {
+    if (const double rounding = rounding_of(recording.odometry); rounding > 0.0)
+      return wrong(recording, sideways->share,
+                   "x and y are rounded to " + math::millimetres_text(rounding) +
+                       ", which bends the way from one to the next",
+                   "write x and y with four digits after the point at least");
     return wrong(
         recording, sideways->share,
         "yaw and place do not belong together, as where yaw is that of a filter or a gyro and the place "
         "is that of the wheels",
         "record the odometry that the wheels alone make, or joint states");
+  }
   const double slope = sideways->slope;
   if (std::abs(slope) < settings::kTurnedFrame ||
       std::abs(slope) < settings::kPlainlyTurned * sideways->slope_deviation)

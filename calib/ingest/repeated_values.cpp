@@ -55,13 +55,22 @@ std::vector<bool> repeats_of(const std::vector<Sample>& samples) {
   return repeats;
 }
 
-/// At rest a lidar without noise repeats itself as well: the wheels have to turn meanwhile.
+/// At rest a lidar without noise repeats itself as well: the wheels have to turn meanwhile, or, where a scan
+/// comes again within milliseconds, before and after most of the repeats.
 bool repeats_in_motion(const Recording& recording, const std::vector<bool>& repeats) {
+  const std::vector<Scan>& scans = recording.scans;
   WheelWay way(recording);
-  for (std::size_t k = 1; k < repeats.size(); ++k)
-    if (repeats[k] && way.between(recording.scans[k - 1].t, recording.scans[k].t) > settings::kMovedBetween_m)
-      return true;
-  return false;
+  std::vector<bool> moves(scans.size(), false);  // since the scan before
+  for (std::size_t k = 1; k < scans.size(); ++k)
+    moves[k] = way.between(scans[k - 1].t, scans[k].t) > settings::kMovedBetween_m;
+  std::ptrdiff_t all = 0, on_the_way = 0;
+  for (std::size_t k = 1; k < scans.size(); ++k) {
+    if (!repeats[k]) continue;
+    if (moves[k]) return true;
+    ++all;
+    if (moves[k - 1] && k + 1 < scans.size() && moves[k + 1]) ++on_the_way;
+  }
+  return 2 * on_the_way > all;
 }
 
 double way_between(const PoseSample& a, const PoseSample& b) { return std::hypot(b.x - a.x, b.y - a.y); }

@@ -2,6 +2,7 @@
 // unit and its origin (see calib/matching/settings.hpp).
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <numbers>
 
@@ -150,6 +151,11 @@ inline constexpr double kPlainlyTurned = 5.0;
 /// Share of the way that goes sideways and that no frame explains, of a yaw from elsewhere. Measured: below
 /// 0.005 in the same recordings; 0.1 with the yaw of a filter.
 inline constexpr double kAsideUnexplained = 0.03;
+
+/// m, to which x and y are rounded where digits were cut off, the largest first, and the share of it that a
+/// multiple is off by. Chosen: a digit or half of one; sums of binary fractions.
+inline constexpr std::array kRoundings_m = {0.1, 0.05, 0.02, 0.01, 0.005, 0.002};
+inline constexpr double kOfARounding = 1e-3;
 
 /// rad, of a step that is part of a turn, and steps of turns to either side. Chosen: a quarter of a turn, in
 /// steps as above.

@@ -188,7 +188,8 @@ Edit diameters(double factor) {
   });
 }
 
-/// Of a drive whose lengths come out near their nominal values with half of the angle between beams as well.
+/// The drive is one whose lengths come out near their nominal values with half of the angle between beams
+/// too.
 void diameter_is_radius(Recording& r) {
   sim::SimulationConfig config = sim::standard_config(11);
   config.room = sim::random_room(11);

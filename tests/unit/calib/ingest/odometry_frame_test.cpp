@@ -61,6 +61,25 @@ TEST(BesideAxle, is_nothing_without_turns_both_ways) {
   EXPECT_FALSE(beside_axle(odometry_of({{0.2, 0.0}, {0.0, 0.6}, {0.0, 0.6}}, 0.0, 0.1)));
 }
 
+TEST(RoundedOdometry, is_blamed_for_its_digits_and_not_for_its_yaw) {
+  const auto rounded = [](double unit) {
+    Recording recording = odometry_of(kDrive, 0.0, 0.0);
+    for (PoseSample& p : recording.odometry)
+      p.x = unit * std::round(p.x / unit), p.y = unit * std::round(p.y / unit);
+    return recording;
+  };
+  const auto error = wrong_odometry_frame(rounded(0.01));
+  ASSERT_TRUE(error);
+  EXPECT_NE(error->what.find("rounded to 10 mm"), std::string::npos) << error->what;
+  EXPECT_NE(error->remedy.find("four digits"), std::string::npos) << error->remedy;
+  EXPECT_NE(wrong_odometry_frame(rounded(0.005))->what.find("rounded to 5 mm"), std::string::npos);
+  EXPECT_FALSE(wrong_odometry_frame(rounded(0.001)));
+  // Yaw of another sensor, beside numbers with digits enough.
+  Recording other = odometry_of(kDrive, 0.0, 0.0);
+  for (PoseSample& p : other.odometry) p.yaw += 0.3 * std::sin(p.t);
+  EXPECT_NE(wrong_odometry_frame(other)->what.find("do not belong together"), std::string::npos);
+}
+
 TEST(BesideAxle, is_nothing_of_counts) {
   Recording recording = odometry_of(kDrive, 0.0, 0.1);
   recording.motion = MotionSource::wheels;

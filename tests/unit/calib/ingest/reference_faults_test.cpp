@@ -209,6 +209,41 @@ TEST(RepeatedPoses, are_left_out_where_one_is_held_while_the_wheels_turn) {
   EXPECT_FALSE(without_repeated_poses(never)) << "nothing shows that it was a reference at all";
 }
 
+/// Each scan comes again after so many seconds; the robot rolls 50 mm from scan to scan, and every so often
+/// it stands for as long.
+Recording scans_twice(double later, std::size_t rests_every) {
+  Recording recording;
+  recording.robot.left_wheel_diameter = recording.robot.right_wheel_diameter = 0.1 / math::kPi;
+  recording.robot.ticks_per_rev = 1000.0;
+  std::int64_t count = 0;
+  for (std::size_t k = 0; k < 30; ++k) {
+    const double t = 0.1 * static_cast<double>(k);
+    const bool rests = rests_every > 0 && k % rests_every < 3;
+    if (!rests) count += 500;
+    recording.ticks.push_back({t, count, count});
+    Scan scan;
+    scan.t = t;
+    scan.angle_increment = 0.1;
+    for (std::int64_t beam = 0; beam < 20; ++beam)
+      scan.ranges.push_back(static_cast<float>(1.0 + 1e-4 * static_cast<double>(count + beam)));
+    recording.scans.push_back(scan);
+    if (later <= 0.0) continue;
+    scan.t += later;
+    recording.scans.push_back(scan);
+  }
+  return recording;
+}
+
+TEST(RepeatedScans, are_left_out_where_each_comes_again_within_milliseconds) {
+  const auto once = without_repeated_scans(scans_twice(1e-3, 0));
+  ASSERT_TRUE(once);
+  EXPECT_EQ(once->scans.size(), 30U);
+  EXPECT_EQ(once->scans[1].t, 0.1) << "the first of both stays";
+  EXPECT_TRUE(without_repeated_scans(scans_twice(1e-3, 30))) << "a rest changes nothing";
+  EXPECT_FALSE(without_repeated_scans(scans_twice(0.0, 8))) << "a lidar without noise, at rest";
+  EXPECT_FALSE(without_repeated_scans(scans_twice(1e-3, 1))) << "at rest all the time";
+}
+
 /// Scans and poses every 0.1 s; the poses begin and end somewhere between.
 Recording with_poses(int scans, int poses) {
   Recording recording;
