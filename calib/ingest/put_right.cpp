@@ -12,9 +12,9 @@ namespace {
 /// Each sees the recording as those before left it: parts of turns belong to one lidar, and whole turns
 /// repeat.
 using Mend = std::optional<Recording> (*)(const Recording&);
-constexpr std::array kMends = {Mend{with_joined_turns}, Mend{without_repeated_scans},
-                               Mend{without_repeated_poses}, Mend{with_whole_turns},
-                               Mend{with_unused_scans_told}};
+constexpr std::array kMends = {Mend{without_dead_counts},    Mend{with_joined_turns},
+                               Mend{without_repeated_scans}, Mend{without_repeated_poses},
+                               Mend{with_whole_turns},       Mend{with_unused_scans_told}};
 
 void mend(Repairs& repairs, std::size_t i, const Recording& given, const std::string& sensor) {
   std::optional<Recording> mended = of_one_sensor(given, sensor);

@@ -1,4 +1,5 @@
-// Faults of the reference that can be undone. Internal to calib/ingest: see put_right.hpp.
+// Faults of the reference, and of the counts beside it, that can be undone. Internal to calib/ingest: see
+// put_right.hpp.
 #pragma once
 
 #include <optional>
@@ -18,6 +19,10 @@ std::optional<Recording> of_one_sensor(const Recording& recording, const std::st
 /// Whole turns, where each scan goes on where the one before ended; nothing where scans are no parts of
 /// turns.
 std::optional<Recording> with_joined_turns(const Recording& recording);
+
+/// Without counts of times in which one of them stands still, as that of a broken encoder, while the other
+/// wheel rolls farther than a robot turns about one wheel; nothing without any, or where one never changes.
+std::optional<Recording> without_dead_counts(const Recording& recording);
 
 /// Without scans or poses that equal the one before in every number although the wheels turned; nothing
 /// without any.

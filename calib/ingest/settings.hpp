@@ -66,6 +66,8 @@ inline constexpr int kReadingsOfScan = 12;
 /// m at the rim, between two scans that are equal in every reading: no lidar sees nothing of that. Chosen:
 /// several steps of a lidar that reads millimetres.
 inline constexpr double kMovedBetween_m = 5e-3;
+/// Turns of a robot about one wheel that stands, in a row. Chosen: drives have half a turn of that.
+inline constexpr double kMostPivots = 2.0;
 /// Poses in a row that a driver sends again. Chosen: of more, the robot stands, unless the wheels turn.
 inline constexpr std::size_t kMostRepeats = 3;
 /// m at the rim, that wheels turn while a pose is held. Chosen: several times a centimetre, to which poses

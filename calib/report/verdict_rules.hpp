@@ -36,7 +36,7 @@ std::optional<std::string> remedy_for_readings(const VerdictEvidence& evidence);
 /// Remedy where a recording lost much.
 inline constexpr const char* kMendLosses =
     "mend what sends these counts, stamps, scans or poses: a second program on the topic, a counter that "
-    "wraps early, a clock without its last digits, a marker that was lost";
+    "wraps early, a clock without its last digits, a marker that was lost, an encoder that fails";
 
 /// In the order in which reasons are listed: what weighs more first.
 std::span<const VerdictRule> verdict_rules();

@@ -209,6 +209,35 @@ TEST(RepeatedPoses, are_left_out_where_one_is_held_while_the_wheels_turn) {
   EXPECT_FALSE(without_repeated_poses(never)) << "nothing shows that it was a reference at all";
 }
 
+/// Both wheels roll 10 mm from sample to sample, but for those from `begin` to `end`, where the left one
+/// stands. The track is 0.1 m, so that a turn about a wheel takes 63 samples.
+Recording with_standing_left(std::size_t begin, std::size_t end) {
+  Recording recording;
+  recording.robot.left_wheel_diameter = recording.robot.right_wheel_diameter = 0.1 / math::kPi;
+  recording.robot.track_width = 0.1;
+  recording.robot.ticks_per_rev = 1000.0;
+  std::int64_t left = 0, right = 0;
+  for (std::size_t k = 0; k < 400; ++k) {
+    recording.ticks.push_back({0.02 * static_cast<double>(k), left, right});
+    right += 100;
+    if (k < begin || k >= end) left += 100;
+  }
+  return recording;
+}
+
+TEST(DeadCounts, are_left_out_where_the_other_wheel_rolls_on) {
+  const auto mended = without_dead_counts(with_standing_left(100, 240));
+  ASSERT_TRUE(mended);
+  EXPECT_EQ(mended->ticks.size(), 400U - 140U);
+  EXPECT_EQ(mended->ticks[100].left, 100 * 100) << "the first of them stays";
+  ASSERT_EQ(mended->discarded.size(), 1U);
+  EXPECT_EQ(mended->discarded[0].count, 140U);
+  EXPECT_EQ(mended->discarded[0].reason, "the left count stands still while the right wheel rolls");
+  EXPECT_EQ(without_dead_counts(with_standing_left(200, 400))->ticks.size(), 201U) << "for good";
+  EXPECT_FALSE(without_dead_counts(with_standing_left(100, 200))) << "a turn and a half about a wheel";
+  EXPECT_FALSE(without_dead_counts(with_standing_left(0, 400))) << "it never counts: that is told";
+}
+
 /// Each scan comes again after so many seconds; the robot rolls 50 mm from scan to scan, and every so often
 /// it stands for as long.
 Recording scans_twice(double later, std::size_t rests_every) {
