@@ -151,7 +151,7 @@ Cause of_all(double ratio, const Measured& measured) {
               (found.is_exact() ? "" : kOnlyAbout)};
 }
 
-bool is_gear(double ratio) { return ratio > settings::kGearFactor || ratio < 1.0 / settings::kGearFactor; }
+bool is_large(double ratio) { return ratio > settings::kGearFactor || ratio < 1.0 / settings::kGearFactor; }
 
 std::string diameter_for(double ratio, const RobotDescription& robot) {
   return number(0.5 * (robot.left_wheel_diameter + robot.right_wheel_diameter) * ratio) + " m";
@@ -168,7 +168,7 @@ Cause of_counted_wheels(double ratio, const RobotDescription& robot) {
   Found found{ratio, factor_for(kOfCounts, ratio)};
   const Factor* of_diameter = found.named == nullptr ? factor_for(kOfDiameters, ratio) : nullptr;
   if (of_diameter != nullptr) found.named = of_diameter;
-  if (found.named == nullptr && is_gear(ratio)) found.named = &kGear;
+  if (found.named == nullptr && is_large(ratio)) found.named = &kGear;
   const std::string resolution = "ticks_per_rev to " + to_type(found, robot.ticks_per_rev / found.ratio()) +
                                  " instead of " + exact(robot.ticks_per_rev) +
                                  (found.is_exact() ? "" : kOnlyAbout) + "; or ";
@@ -185,7 +185,7 @@ Cause of_wheels(double ratio, const Measured& measured) {
   static constexpr Factor kGear{0.0, "they are those of the motor before a gear", kOfAGear};
   const std::string values = values_of(measured.motion);
   Found found{ratio, factor_for(kOfDiameters, ratio)};
-  if (found.named == nullptr && is_gear(ratio)) found.named = &kGear;
+  if (found.named == nullptr && is_large(ratio)) found.named = &kGear;
   const bool are_counts = 1.0 / ratio > settings::kCountsFactor && measured.motion != MotionSource::odometry;
   return {of_both(ratio) + ": " + values + " are " + number(1.0 / ratio) + " times as large as the wheels'" +
               (are_counts ? ": they look like encoder counts, some " + rounded(2.0 * math::kPi / ratio) +
@@ -227,7 +227,7 @@ std::optional<Cause> cause_of_ratios(const LengthRatios& ratios, const Measured&
     return std::nullopt;
   }
   if (const Found found{track, factor_for(kOfTrack, track)};
-      left_fits && right_fits && !track_fits && found.named != nullptr)
+      left_fits && right_fits && !track_fits && (found.named != nullptr || is_large(track)))
     return of_track(found, measured.robot);
   if (track_fits && left_fits != right_fits) {
     const double odd = left_fits ? right : left;

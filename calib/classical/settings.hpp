@@ -12,8 +12,8 @@ inline constexpr double kSameLength = 1.2;
 /// Relative deviation of a ratio from a factor of the table, and of ratios that are alike. Derived: nominal
 /// values are right to 10 %, and neighbouring factors of the table are 27 % apart at least.
 inline constexpr double kSameFactor = 0.12;
-/// Ratio, or its inverse, of both diameters from which a gear is named where the table knows nothing. Chosen,
-/// insensitive.
+/// Ratio, or its inverse, of both diameters from which a gear is named where the table knows nothing, and of
+/// the track from which its value is said to be wrong. Chosen, insensitive.
 inline constexpr double kGearFactor = 2.0;
 /// Ratio of angles, or speeds, to those of the wheels from which they are counts. Chosen: encoders have more
 /// than 600 counts a turn with their gear, and gears of robots that are bought are mostly below 1 : 100.
