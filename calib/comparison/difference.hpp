@@ -17,7 +17,7 @@ struct Change {
   double before = 0.0, after = 0.0;
   double std = 0.0;      ///< of the difference
   double p_value = 1.0;  ///< that so large a difference is chance, among all that were looked at (S. Holm,
-                         ///< Scand. J. Statist. 6, 1979)
+                         ///< Scand. J. Statist. 6, 1979); of an effect: if the true one does not matter
 
   [[nodiscard]] double difference() const { return after - before; }
   [[nodiscard]] double deviations() const { return std > 0.0 ? difference() / std : 0.0; }
@@ -34,17 +34,43 @@ struct JointTest {
   [[nodiscard]] bool is_empty() const { return freedom == 0; }
 };
 
+/// Value of an effect. The direction of a vector (cosine and sine part, x and y) depends on where a drive
+/// began: its components are one value then, their length, as in "wheel_eccentricity: left_size".
+struct EffectValue {
+  std::string name;  ///< "effect: parameter"
+  Quantity quantity;
+  std::vector<std::string> shown_by = {};  ///< parameters whose smallest detectable size holds for it
+  double negligible = 0.0;                 ///< differences that do not matter to odometry
+};
+
+/// In the order of the file, finite ones only.
+std::vector<EffectValue> effect_values(const EffectResult& effect);
+
+/// An effect that one of two calibrations has. It comes and goes by chance near the size from which it is
+/// found, and because of what was driven: both are ruled out where the drives of the other calibration would
+/// have shown so large a value.
+struct LoneEffect {
+  std::string name;
+  EffectValue value = {};  ///< the one that shows best that it is no chance; without a name: none
+  std::optional<double> smallest = {};  ///< that would have been found in the other; none: nobody can tell
+  double p_value = 1.0;                 ///< of chance, among all that was looked at of effects (Holm)
+  [[nodiscard]] bool is_change() const;
+};
+
 struct Difference {
   std::vector<Change> parameters;
   JointTest joint;
   Metre metre = Metre::unstated;
-  std::vector<std::string> came, went;  ///< names of effects
-  std::vector<Change> effects;          ///< parameters of the effects that are in both: "effect: parameter"
+  std::vector<LoneEffect> came, went;
+  std::vector<Change> effects;  ///< values of the effects that are in both: "effect: parameter"
+  bool has_effects = false;     ///< or curves, one of the two at least
   /// Excess in the readings of odometry with the earlier values, if the later ones are true: m in a metre
   /// straight, rad in a full turn. None where a length was not estimated.
   std::optional<Estimate> metre_error, turn_error;
-  /// The joint test or a single parameter says so.
+  /// The joint test, a single parameter or an effect says so.
   [[nodiscard]] bool is_change() const;
+  /// A value of an effect, or one that came or went by more than chance.
+  [[nodiscard]] bool has_changed_effect() const;
 };
 
 /// The two are independent: of different recordings.

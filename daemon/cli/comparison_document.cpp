@@ -21,6 +21,7 @@ namespace {
 namespace comparison = calib::comparison;
 using comparison::Change;
 using comparison::Difference;
+using comparison::LoneEffect;
 using comparison::Metre;
 using comparison::Urgency;
 
@@ -58,13 +59,34 @@ const Change* farthest(const Difference& difference) {
 
 bool is_empty(const Difference& difference) { return difference.joint.is_empty(); }
 
+/// Parameters, values of effects, and effects that came or went by more than chance.
+std::vector<std::string> all_that_changed(const Difference& difference) {
+  std::vector<std::string> names = names_of_changed(difference.parameters);
+  for (std::string& name : names_of_changed(difference.effects)) names.push_back(std::move(name));
+  for (const LoneEffect& effect : difference.came)
+    if (effect.is_change()) names.push_back(readable(effect.name) + " came");
+  for (const LoneEffect& effect : difference.went)
+    if (effect.is_change()) names.push_back(readable(effect.name) + " went");
+  return names;
+}
+
+/// Effects that are in one of both, which may be chance.
+std::vector<std::string> doubtful_effects(const Difference& difference) {
+  std::vector<std::string> names;
+  for (const auto* effects : {&difference.came, &difference.went})
+    for (const LoneEffect& effect : *effects)
+      if (!effect.is_change()) names.push_back(readable(effect.name));
+  return names;
+}
+
 std::string what_changed(const Difference& difference) {
-  if (is_empty(difference)) return "nothing in common";
-  const auto names = names_of_changed(difference.parameters);
+  const std::vector<std::string> names = all_that_changed(difference);
   if (!names.empty()) return fmt::format("{}", fmt::join(names, ", "));
-  if (!difference.joint.is_change()) return "nothing";
+  if (is_empty(difference)) return "nothing in common";
   const Change* most = farthest(difference);
-  return most == nullptr ? "nothing" : "together; most of all " + readable(most->name);
+  if (difference.joint.is_change() && most != nullptr) return "together; most of all " + readable(most->name);
+  const std::vector<std::string> doubtful = doubtful_effects(difference);
+  return doubtful.empty() ? "nothing" : fmt::format("nothing; in one only: {}", fmt::join(doubtful, ", "));
 }
 
 std::string error_text(const comparison::Estimate& error, const std::string& unit, double factor, int digits,
@@ -81,7 +103,10 @@ std::string in_words(const Difference& difference) {
   if (difference.turn_error)
     text += " and a full turn " +
             error_text(*difference.turn_error, "degrees", kDegrees, 2, "too far", "too little");
-  return text + " (+-2 sigma)";
+  text += " (+-2 sigma)";
+  if (difference.has_effects)
+    text += "; this holds for the lengths alone: what effects make of odometry is not in it";
+  return text;
 }
 
 std::string metre_text(const ComparedRobot& robot, const Difference& difference) {
@@ -96,11 +121,27 @@ std::string metre_text(const ComparedRobot& robot, const Difference& difference)
       scale->source, 100.0 * 2.0 * scale->std / scale->value);
 }
 
+/// The effect, and whether it is more than chance that the other drives did not show it.
+std::string lone_text(const LoneEffect& effect) {
+  const std::string name = readable(effect.name);
+  if (!effect.smallest) return name + " (whether the other drives would have shown it cannot be told)";
+  const Quantity& found = effect.value.quantity;
+  const Display show = display_of(found.unit);
+  const auto shown = [&](double size) {
+    return fmt::format("{:.3g}{}{}", size * show.factor, show.unit.empty() ? "" : " ", show.unit);
+  };
+  const std::string parameter = effect.value.name.substr(effect.name.size() + 2);
+  return fmt::format("{} ({} {}; the other drives would have shown {}{})", name, readable(parameter),
+                     shown(found.value), shown(*effect.smallest),
+                     effect.is_change() ? "" : ": with its deviation it may be chance");
+}
+
 std::string effects_text(const Difference& difference) {
   std::string text;
-  const auto add = [&text](const char* what, std::vector<std::string> names) {
+  const auto add = [&text](const char* what, const std::vector<LoneEffect>& effects) {
+    std::vector<std::string> names;
+    for (const LoneEffect& effect : effects) names.push_back(lone_text(effect));
     if (names.empty()) return;
-    for (std::string& name : names) name = readable(name);
     text += (text.empty() ? "" : "; ") + std::string(what) + fmt::format("{}", fmt::join(names, ", "));
   };
   add("effects that came: ", difference.came);
@@ -335,13 +376,38 @@ Section pictures_section(const ComparedRobot& robot, bool with_lines) {
 
 // --- One robot, many robots ------------------------------------------------------------------------------
 
+void add_once(std::vector<std::string>& names, std::vector<std::string> more) {
+  for (std::string& name : more)
+    if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(std::move(name));
+}
+
+/// The steps, and the whole change where an effect grows too slowly for one of them.
+std::vector<const Difference*> judged(const ComparedRobot& robot) {
+  std::vector<const Difference*> all;
+  for (const Difference& step : robot.steps) all.push_back(&step);
+  if (robot.overall && robot.overall->has_changed_effect()) all.push_back(&*robot.overall);
+  return all;
+}
+
+/// The p-value is of lengths and lidar: beside effects that changed alone it says that these did not.
 std::string finding(const ComparedRobot& robot) {
   if (std::all_of(robot.steps.begin(), robot.steps.end(), is_empty)) return "nothing to compare";
   const auto& test = robot.usable.size() > 2 ? robot.all : robot.steps.front().joint;
-  const bool changed = test.is_change() || std::any_of(robot.steps.begin(), robot.steps.end(),
-                                                       [](const Difference& one) { return one.is_change(); });
-  const char* what = changed ? "something changed" : "nothing changed";
-  return test.is_empty() ? what : fmt::format("{} ({})", what, p_text(test.p_value));
+  bool changed = test.is_change(), by_effects = false;
+  std::vector<std::string> names, doubtful;
+  for (const Difference* one : judged(robot)) {
+    changed = changed || one->joint.is_change() || !names_of_changed(one->parameters).empty();
+    by_effects = by_effects || one->has_changed_effect();
+    add_once(names, all_that_changed(*one));
+    add_once(doubtful, doubtful_effects(*one));
+  }
+  const std::string p = test.is_empty() ? "" : fmt::format(" ({})", p_text(test.p_value));
+  const std::string listed = fmt::format("{}", fmt::join(names, ", "));
+  if (changed) return "something changed" + p + (names.empty() ? "" : ": " + listed);
+  if (by_effects) return "something changed: " + listed + "; nothing else did" + p;
+  if (doubtful.empty()) return "nothing changed" + p;
+  return fmt::format("nothing changed{}, but effects are {}: {}", p,
+                     robot.usable.size() > 2 ? "not in all" : "in one only", fmt::join(doubtful, ", "));
 }
 
 /// Sections, the most important first: the whole change, where it leads, and then how it came about.
@@ -426,6 +492,39 @@ std::string fleet_headline(const std::vector<ComparedRobot>& robots) {
   return text;
 }
 
+// --- CSV -------------------------------------------------------------------------------------------------
+
+constexpr const char* kNoChange = ",,,\n";
+
+std::string value_fields(const std::string& name, const Quantity& quantity) {
+  return fmt::format(",{},{},{},{}", name, quantity.unit, quantity.value,
+                     quantity.std >= 0.0 ? fmt::format("{}", quantity.std) : "");
+}
+
+std::string change_fields(const std::vector<Change>& changes, const std::string& name) {
+  for (const Change& one : changes)
+    if (one.name == name) return fmt::format(",{},{},{}\n", one.difference(), one.std, one.p_value);
+  return kNoChange;
+}
+
+/// An effect that came has no change, but a p-value of chance.
+std::string effect_fields(const Difference* since, const std::string& name) {
+  if (since == nullptr) return kNoChange;
+  for (const LoneEffect& effect : since->came)
+    if (effect.value.name == name) return fmt::format(",,,{}\n", effect.p_value);
+  return change_fields(since->effects, name);
+}
+
+/// An effect that went has a line without a value.
+std::string went_lines(const std::string& of, const Difference& since) {
+  std::string out;
+  for (const LoneEffect& effect : since.went)
+    if (effect.smallest)
+      out +=
+          fmt::format("{},{},{},,,,,{}\n", of, effect.value.name, effect.value.quantity.unit, effect.p_value);
+  return out;
+}
+
 }  // namespace
 
 Document describe(const std::vector<ComparedRobot>& robots, const ComparisonOptions& options, Extent extent) {
@@ -461,17 +560,15 @@ std::string to_csv(const std::vector<ComparedRobot>& robots) {
           fmt::format("{},{},{},{},{}", text(robot.robot_id), text(file.path),
                       file.calibration.driven ? utc_text(file.calibration.driven->begin) : "",
                       odometer ? fmt::format("{}", *odometer) : "", name_of(file.calibration.verdict));
-      for (const auto& [name, quantity] : file.calibration.parameters) {
-        if (!std::isfinite(quantity.value)) continue;
-        out += fmt::format("{},{},{},{},{}", of, name, quantity.unit, quantity.value,
-                           quantity.std >= 0.0 ? fmt::format("{}", quantity.std) : "");
-        const Change* since = nullptr;
-        if (k > 0)
-          for (const Change& one : robot.steps[k - 1].parameters)
-            if (one.name == name) since = &one;
-        out += since == nullptr ? ",,,\n"
-                                : fmt::format(",{},{},{}\n", since->difference(), since->std, since->p_value);
-      }
+      const Difference* since = k > 0 ? &robot.steps[k - 1] : nullptr;
+      for (const auto& [name, quantity] : file.calibration.parameters)
+        if (std::isfinite(quantity.value))
+          out += of + value_fields(name, quantity) +
+                 (since == nullptr ? kNoChange : change_fields(since->parameters, name));
+      for (const EffectResult& effect : file.calibration.effects)
+        for (const comparison::EffectValue& value : comparison::effect_values(effect))
+          out += of + value_fields(value.name, value.quantity) + effect_fields(since, value.name);
+      if (since != nullptr) out += went_lines(of, *since);
     }
   return out;
 }

@@ -41,6 +41,34 @@ ordered_json object_of(const std::vector<comparison::Change>& changes) {
   return out;
 }
 
+ordered_json names_of(const std::vector<comparison::LoneEffect>& effects) {
+  ordered_json names = ordered_json::array();
+  for (const comparison::LoneEffect& effect : effects) names.push_back(effect.name);
+  return names;
+}
+
+void add_lone(ordered_json& all, const std::vector<comparison::LoneEffect>& effects, bool came) {
+  for (const comparison::LoneEffect& effect : effects) {
+    const bool known = effect.smallest.has_value();
+    const Quantity& value = effect.value.quantity;
+    all.push_back({{"effect", effect.name},
+                   {"came", came},
+                   {"changed", effect.is_change()},
+                   {"p_value", known ? ordered_json(effect.p_value) : ordered_json(nullptr)},
+                   {"value_of", known ? ordered_json(effect.value.name) : ordered_json(nullptr)},
+                   {"value", known ? ordered_json(value.value) : ordered_json(nullptr)},
+                   {"unit", known ? ordered_json(value.unit) : ordered_json(nullptr)},
+                   {"smallest", known ? ordered_json(*effect.smallest) : ordered_json(nullptr)}});
+  }
+}
+
+ordered_json in_one_of(const comparison::Difference& difference) {
+  ordered_json all = ordered_json::array();
+  add_lone(all, difference.came, true);
+  add_lone(all, difference.went, false);
+  return all;
+}
+
 ordered_json object_of(const comparison::Difference& difference, const ComparedFile& from,
                        const ComparedFile& to) {
   return {{"from", from.path},
@@ -52,8 +80,9 @@ ordered_json object_of(const comparison::Difference& difference, const ComparedF
           {"metre_error", object_of(difference.metre_error)},
           {"turn_error", object_of(difference.turn_error)},
           {"effects", object_of(difference.effects)},
-          {"came", difference.came},
-          {"went", difference.went}};
+          {"came", names_of(difference.came)},
+          {"went", names_of(difference.went)},
+          {"in_one_only", in_one_of(difference)}};
 }
 
 ordered_json object_of(const ComparedFile& file) {

@@ -14,6 +14,7 @@ namespace {
 using test_support::drawn;
 using test_support::TrueState;
 using ::testing::ElementsAre;
+using ::testing::Field;
 using ::testing::IsEmpty;
 
 std::vector<std::string> changed(const Difference& found) {
@@ -123,11 +124,122 @@ TEST(Difference, tells_which_effects_came_went_and_changed) {
   after.effects = {{"backlash", {{"play", {0.03, 0.001, "rad"}}}, {}, {}, "host"},
                    {"time_offset", {{"offset", {0.1, 0.001, "s"}}}, {}, {}, "host"}};
   const Difference found = difference(before, after);
-  EXPECT_THAT(found.came, ElementsAre("time_offset"));
-  EXPECT_THAT(found.went, ElementsAre("tick_loss"));
+  EXPECT_THAT(found.came, ElementsAre(Field(&LoneEffect::name, "time_offset")));
+  EXPECT_THAT(found.went, ElementsAre(Field(&LoneEffect::name, "tick_loss")));
   ASSERT_EQ(found.effects.size(), 1U);
   EXPECT_EQ(found.effects.front().name, "backlash: play");
   EXPECT_TRUE(found.effects.front().is_change());
+  EXPECT_TRUE(found.has_changed_effect());
+  EXPECT_FALSE(found.joint.is_change());
+  EXPECT_TRUE(found.is_change());
+}
+
+EffectResult play(double value, double std) {
+  return {"backlash", {{"left_play", {value, std, "rad"}}}, {}, {}, "host"};
+}
+
+Detectable detectable_play(double smallest) { return {"backlash", "left_play", "rad", smallest, 0.02, ""}; }
+
+TEST(Difference, is_a_change_where_the_other_drives_would_have_shown_the_effect) {
+  std::mt19937 random(13);
+  Calibration before = drawn({}, random), after = drawn({}, random);
+  before.detectable = {detectable_play(0.003)};
+  after.effects = {play(0.06, 1e-4)};
+  const Difference came = difference(before, after);
+  EXPECT_FALSE(came.joint.is_change());
+  EXPECT_TRUE(came.is_change());
+  EXPECT_TRUE(came.came.front().is_change());
+  EXPECT_EQ(came.came.front().value.name, "backlash: left_play");
+  EXPECT_TRUE(difference(after, before).went.front().is_change());
+  EXPECT_EQ(standing_of(after, std::vector<const Calibration*>{&before, &after}).urgency, Urgency::changed);
+}
+
+TEST(Difference, is_none_where_nobody_can_tell_whether_the_effect_was_there_before) {
+  std::mt19937 random(14);
+  Calibration before = drawn({}, random), after = drawn({}, random);
+  after.effects = {play(0.06, 1e-4)};
+  EXPECT_FALSE(difference(before, after).is_change()) << "no size is stated that would have been found";
+  before.detectable = {detectable_play(0.003)};
+  before.detectable.front().smallest.reset();
+  EXPECT_FALSE(difference(before, after).is_change()) << "no size shows";
+  before.detectable = {detectable_play(0.055)};
+  EXPECT_FALSE(difference(before, after).is_change()) << "so near to what shows it may be chance";
+  before.detectable = {detectable_play(0.003)};
+  before.considered = {{"backlash", 40.0, 0.0005, "no gain on held-out data"}};
+  EXPECT_FALSE(difference(before, after).is_change()) << "before it was seen, too, and not taken";
+  before.considered.clear();
+  EXPECT_TRUE(difference(before, after).is_change());
+  before.effects = {{"caster_kick", {{"kappa", {0.02, 1e-4, "rad"}}}, {}, {"backlash"}, "host"}};
+  const Difference renamed = difference(before, after);
+  EXPECT_EQ(renamed.came.size(), 1U);
+  EXPECT_FALSE(renamed.is_change()) << "before it may have gone by another name";
+}
+
+// The search finds what is beyond 4.4 deviations: sizes about that come and go by chance.
+TEST(Difference, of_an_effect_near_the_threshold_is_called_a_change_as_rarely_as_the_level_says) {
+  std::mt19937 random(15);
+  std::normal_distribution<double> normal;
+  constexpr double kStd = 0.5e-3, kThreshold = 4.4 * kStd, kSmallest = kThreshold + 1.28 * kStd;
+  for (const double truth : {0.5, 0.8, 1.0, 1.2, 1.5}) {
+    int lone = 0, changes = 0;
+    constexpr int kPairs = 4000;
+    for (int k = 0; k < kPairs; ++k) {
+      std::array<Calibration, 2> pair{drawn({}, random), drawn({}, random)};
+      for (Calibration& one : pair) {
+        const double estimate = truth * kThreshold + kStd * normal(random);
+        if (estimate > kThreshold)
+          one.effects = {play(estimate, kStd)};
+        else
+          one.detectable = {detectable_play(kSmallest)};
+      }
+      const Difference found = difference(pair[0], pair[1]);
+      lone += found.came.empty() && found.went.empty() ? 0 : 1;
+      changes += found.has_changed_effect() ? 1 : 0;
+    }
+    EXPECT_GT(lone, truth == 1.0 ? 0.4 * kPairs : -1.0) << "the test tests something";
+    EXPECT_LE(changes, 0.01 * kPairs) << truth;
+  }
+}
+
+// Rooms and matchers move an effect by more than its deviation says: that is no change of the robot.
+TEST(Difference, of_an_effect_is_none_where_it_does_not_matter_to_odometry) {
+  std::mt19937 random(17);
+  Calibration before = drawn({}, random), after = drawn({}, random);
+  before.effects = {play(0.06, 1e-4)};
+  after.effects = {play(0.0608, 1e-4)};
+  const Difference small = difference(before, after);
+  EXPECT_GT(small.effects.front().deviations(), 5.0);
+  EXPECT_FALSE(small.is_change());
+  after.effects = {play(0.0638, 1e-4)};
+  EXPECT_TRUE(difference(before, after).is_change());
+}
+
+// A counter that began anew at power-on shows the same wheel with another phase.
+TEST(Difference, of_an_eccentric_wheel_is_that_of_its_size) {
+  std::mt19937 random(16);
+  const auto eccentric = [](const std::string& side, double size, double phase) {
+    return EffectResult{"wheel_eccentricity",
+                        {{side + "_cos", {size * std::cos(phase), 1e-4, "1"}},
+                         {side + "_sin", {size * std::sin(phase), 1e-4, "1"}}},
+                        {},
+                        {},
+                        "host"};
+  };
+  Calibration before = drawn({}, random), after = drawn({}, random);
+  before.effects = {eccentric("left", 0.02, 0.3)};
+  after.effects = {eccentric("left", 0.02, 2.0)};
+  const Difference turned = difference(before, after);
+  ASSERT_EQ(turned.effects.size(), 1U);
+  EXPECT_EQ(turned.effects.front().name, "wheel_eccentricity: left_size");
+  EXPECT_FALSE(turned.is_change());
+  after.effects = {eccentric("left", 0.025, 2.0)};
+  EXPECT_TRUE(difference(before, after).is_change());
+  after.effects = {eccentric("right", 0.02, 0.3)};
+  after.detectable = {{"wheel_eccentricity", "left_sin", "1", 0.001, 0.005, ""}};
+  const Difference other_wheel = difference(before, after);
+  ASSERT_EQ(other_wheel.went.size(), 1U);
+  EXPECT_TRUE(other_wheel.went.front().is_change()) << "that of the left wheel went";
+  EXPECT_FALSE(other_wheel.came.front().is_change()) << "of the right one nothing is known";
 }
 
 TEST(Difference, compares_what_both_have_estimated) {

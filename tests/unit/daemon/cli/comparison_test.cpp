@@ -135,6 +135,45 @@ TEST(Compare, says_in_words_what_changed_and_that_the_metre_cancels) {
               HasSubstr("robot without a name: nothing changed"));
 }
 
+TEST(Compare, says_which_effect_came_and_that_lengths_did_not_change) {
+  std::mt19937 random(13);
+  auto files = std::vector<ComparedFile>{file("a", "r1", 0, random), file("b", "r1", 1, random)};
+  files[1].calibration.effects = {{"backlash", {{"left_play", {0.06, 1e-4, "rad"}}}, {}, {}, "host"}};
+  const std::string unknown = text(value_of(compare(files, {})), {});
+  EXPECT_THAT(unknown, HasSubstr("robot r1: nothing changed (p "));
+  EXPECT_THAT(unknown, HasSubstr("), but effects are in one only: backlash\n"));
+  EXPECT_THAT(unknown, HasSubstr("changed: nothing; in one only: backlash;"));
+  files[0].calibration.detectable = {{"backlash", "left_play", "rad", 0.003, 0.02, ""}};
+  const auto robots = value_of(compare(files, {}));
+  const std::string told = text(robots, {});
+  EXPECT_THAT(told, HasSubstr("robot r1: something changed: backlash came; nothing else did (p "));
+  EXPECT_THAT(told, HasSubstr("changed: backlash came; joint test"));
+  EXPECT_THAT(told, HasSubstr("backlash (left play 3.44 deg; the other drives would have shown 0.172 deg)"));
+  EXPECT_THAT(told, HasSubstr("this holds for the lengths alone"));
+  const auto step = to_json(robots, {})["robots"][0]["steps"][0];
+  EXPECT_TRUE(step["changed"].get<bool>());
+  EXPECT_EQ(step["came"], nlohmann::ordered_json({"backlash"}));
+  EXPECT_TRUE(step["in_one_only"][0]["changed"].get<bool>());
+  EXPECT_EQ(to_json(robots, {})["robots"][0]["state"], "changed");
+  EXPECT_THAT(to_csv(robots), HasSubstr("accepted,backlash: left_play,rad,0.06,0.0001,,,"));
+  const ComparisonOptions fleet{true, false, std::nullopt};
+  EXPECT_THAT(text(value_of(compare(files, fleet)), fleet, Extent::summary), HasSubstr("backlash came"));
+}
+
+TEST(Compare, names_the_value_of_an_effect_that_changed) {
+  std::mt19937 random(14);
+  auto files = std::vector<ComparedFile>{file("a", "r1", 0, random), file("b", "r1", 1, random),
+                                         file("c", "r1", 2, random)};
+  for (std::size_t k = 0; k < 3; ++k)
+    files[k].calibration.effects = {
+        {"backlash", {{"left_play", {k < 2 ? 0.06 : 0.03, 1e-4, "rad"}}}, {}, {}, "host"}};
+  const auto robots = value_of(compare(files, {}));
+  EXPECT_THAT(text(robots, {}), HasSubstr("something changed: backlash: left play; nothing else did"));
+  EXPECT_FALSE(robots.front().steps[0].is_change());
+  EXPECT_TRUE(robots.front().steps[1].is_change());
+  EXPECT_THAT(to_csv(robots), HasSubstr("backlash: left_play,rad,0.03,0.0001,-0.03,0.000141"));
+}
+
 // The bound is of 5 mm in a metre of a diameter of some 148.5 mm, at 150 um a month: five months ahead.
 TEST(Compare, finds_the_wear_of_a_year_and_the_date_of_a_bound) {
   std::mt19937 random(6);
