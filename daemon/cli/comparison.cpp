@@ -17,17 +17,17 @@ namespace {
 namespace comparison = calib::comparison;
 
 /// Robots in the order in which they are named first. A file that names none is of the only robot there is;
-/// of several, nobody knows of which: it stands alone.
-std::vector<ComparedRobot> grouped(std::vector<ComparedFile> files) {
+/// of several, and in a fleet, nobody knows of which: it stands alone.
+std::vector<ComparedRobot> grouped(std::vector<ComparedFile> files, bool is_fleet) {
   std::set<std::string> named;
   for (const ComparedFile& file : files)
     if (const auto& id = file.calibration.robot.robot_id; !id.empty()) named.insert(id);
   std::vector<ComparedRobot> robots;
   for (ComparedFile& file : files) {
     const std::string& own = file.calibration.robot.robot_id;
-    const std::string id = own.empty() && named.size() == 1 ? *named.begin() : own;
+    const std::string id = own.empty() && named.size() == 1 && !is_fleet ? *named.begin() : own;
     const auto same = [&](const ComparedRobot& robot) {
-      return robot.robot_id == id && (!id.empty() || named.empty());
+      return robot.robot_id == id && (!id.empty() || (named.empty() && !is_fleet));
     };
     auto found = std::find_if(robots.begin(), robots.end(), same);
     if (found == robots.end()) {
@@ -162,7 +162,7 @@ std::string file_name(const std::string& path) { return std::filesystem::path(pa
 
 Result<std::vector<ComparedRobot>> compare(std::vector<ComparedFile> files,
                                            const ComparisonOptions& options) {
-  std::vector<ComparedRobot> robots = grouped(std::move(files));
+  std::vector<ComparedRobot> robots = grouped(std::move(files), options.by_robot);
   for (ComparedRobot& robot : robots) put_in_order(robot);
   if (!options.by_robot)
     if (auto error = not_comparable(robots)) return *error;

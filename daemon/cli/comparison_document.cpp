@@ -456,6 +456,14 @@ std::vector<std::string> fleet_row(const ComparedRobot& robot, const std::option
   return row;
 }
 
+/// In a fleet they stand alone.
+std::vector<std::string> names_of_unnamed(const std::vector<ComparedRobot>& robots) {
+  std::vector<std::string> names;
+  for (const ComparedRobot& robot : robots)
+    if (robot.robot_id.empty()) names.push_back(file_name(robot.files.front().path));
+  return names;
+}
+
 Section fleet_section(const std::vector<ComparedRobot>& robots, const ComparisonOptions& options) {
   Section section{
       "",
@@ -465,6 +473,11 @@ Section fleet_section(const std::vector<ComparedRobot>& robots, const Comparison
       {{"robot", "driven", "left", "right", "track", "state", "metre mm/m", "changed"}, {}}};
   if (options.bound) section.table.head.push_back("passes " + bound_text(*options.bound));
   for (const ComparedRobot& robot : robots) section.table.rows.push_back(fleet_row(robot, options.bound));
+  if (const auto unnamed = names_of_unnamed(robots); !unnamed.empty())
+    section.lines.push_back(fmt::format(
+        "{} name{} no robot (robot_id), and stand{} alone here; to name it: odomcalibctl solve RECORDING "
+        "--robot-id NAME",
+        fmt::join(unnamed, ", "), unnamed.size() == 1 ? "s" : "", unnamed.size() == 1 ? "s" : ""));
   return section;
 }
 
@@ -481,8 +494,13 @@ Document::Tone tone_of_robots(const std::vector<ComparedRobot>& robots) {
   return Document::Tone::good;
 }
 
+/// Files without a name may be of one robot or of several.
 std::string fleet_headline(const std::vector<ComparedRobot>& robots) {
-  std::string text = fmt::format("{} robots", robots.size());
+  const std::size_t unnamed = names_of_unnamed(robots).size(), named = robots.size() - unnamed;
+  std::string text = named > 0 || unnamed == 0 ? fmt::format("{} robot{}", named, named == 1 ? "" : "s") : "";
+  if (unnamed > 0)
+    text += fmt::format("{}{} file{} that name{} no robot", text.empty() ? "" : " and ", unnamed,
+                        unnamed == 1 ? "" : "s", unnamed == 1 ? "s" : "");
   for (const Urgency urgency : {Urgency::refused, Urgency::changed, Urgency::warnings, Urgency::none}) {
     const auto count = std::count_if(robots.begin(), robots.end(), [&](const ComparedRobot& robot) {
       return robot.standing.urgency == urgency;
@@ -537,7 +555,8 @@ Document describe(const std::vector<ComparedRobot>& robots, const ComparisonOpti
   for (const ComparedRobot& robot : robots) {
     if (!options.trend && extent == Extent::summary) continue;
     std::vector<Section> sections = sections_of(robot, options, extent);
-    sections.front().title = robot_name(robot) + ": " + finding(robot);
+    const std::string which = robot.robot_id.empty() ? " (" + file_name(robot.files.front().path) + ")" : "";
+    sections.front().title = robot_name(robot) + which + ": " + finding(robot);
     for (Section& section : sections) document.sections.push_back(std::move(section));
   }
   return document;

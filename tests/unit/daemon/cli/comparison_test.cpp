@@ -94,6 +94,22 @@ TEST(Compare, takes_a_file_without_a_name_for_the_only_robot_there_is) {
   EXPECT_EQ(many.size(), 4U) << "of several nobody knows of which it is";
 }
 
+TEST(Compare, of_a_fleet_leaves_each_file_without_a_name_alone_and_says_how_to_name_it) {
+  std::mt19937 random(15);
+  const ComparisonOptions fleet{true, false, std::nullopt};
+  const auto one_named = value_of(
+      compare({file("a", "r1", 1, random), file("b", "", 2, random), file("c", "", 3, random)}, fleet));
+  ASSERT_EQ(one_named.size(), 3U) << "none is taken to be of r1";
+  const std::string told = text(one_named, fleet, Extent::summary);
+  EXPECT_THAT(told, HasSubstr("1 robot and 2 files that name no robot, 3 fine"));
+  EXPECT_THAT(told, HasSubstr("b.json, c.json name no robot (robot_id)"));
+  EXPECT_THAT(told, HasSubstr("solve RECORDING --robot-id NAME"));
+  EXPECT_THAT(text(one_named, fleet), HasSubstr("robot without a name (b.json): nothing to compare"));
+  const auto unnamed = value_of(compare({file("a", "", 1, random), file("b", "", 2, random)}, fleet));
+  ASSERT_EQ(unnamed.size(), 2U) << "nor are they one robot";
+  EXPECT_THAT(text(unnamed, fleet, Extent::summary), HasSubstr("2 files that name no robot, 2 fine"));
+}
+
 TEST(Compare, leaves_out_what_was_refused_and_what_is_of_the_same_recording) {
   std::mt19937 random(4);
   auto files = std::vector<ComparedFile>{file("a", "r1", 1, random), file("b", "r1", 2, random),
