@@ -25,12 +25,36 @@ using comparison::LoneEffect;
 using comparison::Metre;
 using comparison::Urgency;
 
-constexpr std::size_t kDate = 10;  // characters of "2026-05-04"
+// Characters of "2026-05-04", where the time begins behind it, and characters of "22:15".
+constexpr std::size_t kDate = 10, kTimeAt = 11, kTime = 5;
 
 std::string day_of(double t) { return is_date(t) ? utc_text(t).substr(0, kDate) : "-"; }
 
+std::string minute_of(double t) {
+  return is_date(t) ? day_of(t) + " " + utc_text(t).substr(kTimeAt, kTime) : "-";
+}
+
+/// Whether another file of the robot has the same text about when it was driven.
+template <typename Text>
+bool is_shared(const ComparedRobot& robot, const ComparedFile& file, Text text_of) {
+  return std::any_of(robot.files.begin(), robot.files.end(), [&](const ComparedFile& other) {
+    return &other != &file && other.calibration.driven &&
+           text_of(other.calibration.driven->begin) == text_of(file.calibration.driven->begin);
+  });
+}
+
+/// The day, with the time where another drive is of the same day.
+std::string when_driven(const ComparedRobot& robot, const ComparedFile& file) {
+  if (!file.calibration.driven) return "-";
+  const double begin = file.calibration.driven->begin;
+  return is_shared(robot, file, day_of) ? minute_of(begin) : day_of(begin);
+}
+
+/// Names one of the files; they are told apart by name where the time does not do it.
 std::string label_of(const ComparedRobot& robot, const ComparedFile& file) {
-  return robot.by_date ? day_of(file.calibration.driven->begin) : file_name(file.path);
+  if (!robot.by_date) return file_name(file.path);
+  const std::string when = when_driven(robot, file);
+  return is_shared(robot, file, minute_of) ? fmt::format("{} ({})", when, file_name(file.path)) : when;
 }
 
 std::string robot_name(const ComparedRobot& robot) {
@@ -218,8 +242,7 @@ std::string files_text(const ComparedRobot& robot) {
 Section files_section(const ComparedRobot& robot) {
   Section section{"Files", {}, {{"file", "driven", "verdict", ""}, {}}};
   for (const ComparedFile& file : robot.files) {
-    const auto& driven = file.calibration.driven;
-    section.table.rows.push_back({file_name(file.path), driven ? day_of(driven->begin) : "-",
+    section.table.rows.push_back({file_name(file.path), when_driven(robot, file),
                                   readable(name_of(file.calibration.verdict)),
                                   file.left_out.empty() ? "" : "left out: " + file.left_out});
   }

@@ -110,6 +110,21 @@ TEST(Compare, of_a_fleet_leaves_each_file_without_a_name_alone_and_says_how_to_n
   EXPECT_THAT(text(unnamed, fleet, Extent::summary), HasSubstr("2 files that name no robot, 2 fine"));
 }
 
+TEST(Compare, tells_drives_of_one_day_apart_by_time_or_by_name) {
+  std::mt19937 random(16);
+  auto files = std::vector<ComparedFile>{file("a", "r1", 0, random), file("b", "r1", 0, random),
+                                         file("c", "r1", 1, random)};
+  files[0].calibration.driven = Driven{kFirstDay + 4000.0, kFirstDay + 4300.0};
+  const std::string told = text(value_of(compare({files[0], files[1]}, {})), {});
+  EXPECT_THAT(told, HasSubstr("From 2026-01-02 10:00 to 2026-01-02 11:06"));
+  EXPECT_THAT(told, HasSubstr("a.json  2026-01-02 11:06"));
+  EXPECT_THAT(text(value_of(compare({files[1], files[2]}, {})), {}),
+              HasSubstr("From 2026-01-02 to 2026-02-01"));
+  files[0].calibration.driven = Driven{kFirstDay + 5.0, kFirstDay + 300.0};
+  EXPECT_THAT(text(value_of(compare({files[0], files[1]}, {})), {}),
+              HasSubstr("From 2026-01-02 10:00 (b.json) to 2026-01-02 10:00 (a.json)"));
+}
+
 TEST(Compare, leaves_out_what_was_refused_and_what_is_of_the_same_recording) {
   std::mt19937 random(4);
   auto files = std::vector<ComparedFile>{file("a", "r1", 1, random), file("b", "r1", 2, random),
