@@ -7,7 +7,10 @@
 #include <algorithm>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string_view>
+
+#include "daemon/cli/settings.hpp"
 
 namespace odomcalib::cli {
 namespace {
@@ -15,6 +18,10 @@ namespace {
 constexpr const char* kSeparation = "wheel_separation";
 constexpr const char* kRadius = "wheel_radius";
 constexpr const char* kMerge = "<<";
+/// Begins the parameters of a node of ROS 2.
+constexpr const char* kParameters = "ros__parameters";
+/// ROS 1: takes the place of those of both wheels where it is there.
+constexpr const char* kOfBothWheels = "wheel_radius_multiplier";
 
 /// Characters of the whole text, as the library counts them.
 struct Span {
@@ -30,6 +37,8 @@ struct YamlValue {
 };
 
 struct YamlMapping {
+  std::optional<std::size_t> outer;  ///< the mapping that holds it, by number; none: it is the outermost
+  std::string own_key;               ///< under which it stands there; empty in a sequence
   std::size_t line = 0;
   bool flow = false, shared = false;
   std::vector<YamlValue> values;
@@ -125,7 +134,15 @@ class MappingReader {
     inner.shared = named || (!open_.empty() && open_.back().shared);
     if (flow) {
       inner.mapping = mappings_.size();
-      mappings_.push_back({event.start_mark.line + 1, *flow, inner.shared, {}});
+      const auto around = std::find_if(open_.rbegin(), open_.rend(),
+                                       [](const Open& outer) { return outer.mapping.has_value(); });
+      const bool is_value = !open_.empty() && open_.back().mapping.has_value();
+      mappings_.push_back({around == open_.rend() ? std::nullopt : around->mapping,
+                           is_value ? open_.back().key : "",
+                           event.start_mark.line + 1,
+                           *flow,
+                           inner.shared,
+                           {}});
     }
     open_.push_back(std::move(inner));
   }
@@ -190,6 +207,112 @@ Result<const YamlMapping*> place_in(const std::vector<YamlMapping>& mappings, co
                where, "change one of them by hand, with what export prints; nothing was written"};
 }
 
+/// Keys that lead to a mapping, the outermost first.
+std::vector<std::string> path_of(const std::vector<YamlMapping>& mappings, const YamlMapping& mapping) {
+  std::vector<std::string> keys;
+  for (const YamlMapping* at = &mapping; at->outer; at = &mappings[*at->outer]) keys.push_back(at->own_key);
+  std::reverse(keys.begin(), keys.end());
+  return keys;
+}
+
+/// Parameters of a node of ROS.
+struct NodeSection {
+  std::vector<std::string> node;       ///< names between slashes, from the keys above "ros__parameters"
+  std::vector<std::string> parameter;  ///< keys from there on, which begin the parameter's name
+};
+
+NodeSection section_of(const std::vector<std::string>& path) {
+  const auto end = std::find(path.begin(), path.end(), kParameters);
+  NodeSection section{{}, {end, path.end()}};
+  for (auto key = path.begin(); key != end; ++key)
+    for (std::size_t at = 0; at <= key->size();) {
+      const std::size_t slash = std::min(key->find('/', at), key->size());
+      if (slash > at) section.node.push_back(key->substr(at, slash - at));
+      at = slash + 1;
+    }
+  return section;
+}
+
+bool is_wildcard(const std::string& name) { return name.find('*') != std::string::npos; }
+
+/// Whether a node may have both names; "**" stands for any number of names, another wildcard for one.
+bool are_of_one_node(std::span<const std::string> a, std::span<const std::string> b) {
+  if (a.empty() && b.empty()) return true;
+  if (a.size() + b.size() > settings::kMostNamesOfNodes) return true;
+  if (!a.empty() && a[0] == "**")
+    return are_of_one_node(a.subspan(1), b) || (!b.empty() && are_of_one_node(a, b.subspan(1)));
+  if (!b.empty() && b[0] == "**") return are_of_one_node(b, a);
+  if (a.empty() || b.empty()) return false;
+  return (a[0] == b[0] || is_wildcard(a[0]) || is_wildcard(b[0])) &&
+         are_of_one_node(a.subspan(1), b.subspan(1));
+}
+
+bool has_wildcard(const std::vector<std::string>& node) {
+  return std::any_of(node.begin(), node.end(), is_wildcard);
+}
+
+/// A value that the controller takes beside those of the place, or instead of them.
+struct Rival {
+  const YamlValue* value;
+  double wanted;
+};
+
+using WantedValues = std::vector<std::pair<std::string, double>>;
+
+/// The first value of a mapping that is another than the wanted one.
+std::optional<Rival> other_value(const YamlMapping& mapping, const WantedValues& values) {
+  for (const auto& [key, wanted] : values)
+    for (const YamlValue* value : mapping.of(key))
+      if (value->kind != YamlValue::Kind::plain || number_in(value->text) != wanted)
+        return Rival{value, wanted};
+  return std::nullopt;
+}
+
+/// Finds values elsewhere that may count for the controller of a place.
+class RivalSearch {
+ public:
+  RivalSearch(const std::vector<YamlMapping>& mappings, const YamlMapping& place, const WantedValues& values)
+      : mappings_(mappings), place_(place), own_(section_of(path_of(mappings, place))), all_(values) {
+    all_.insert(all_.end(), for_both_.begin(), for_both_.end());
+  }
+
+  [[nodiscard]] std::optional<Rival> first() const {
+    for (const YamlMapping& mapping : mappings_) {
+      const bool is_place = &mapping == &place_;
+      if (!other_value(mapping, is_place ? for_both_ : all_)) continue;
+      if (is_place || mapping.shared) return other_value(mapping, is_place ? for_both_ : all_);
+      const NodeSection section = section_of(path_of(mappings_, mapping));
+      if (section.parameter != own_.parameter || !are_of_one_node(section.node, own_.node)) continue;
+      if (const auto found = other_value(mapping, yields(mapping, section) ? for_both_ : all_)) return found;
+    }
+    return std::nullopt;
+  }
+
+ private:
+  /// ROS 2 takes the later one of two sections of a node; other readers may take the one without wildcards.
+  [[nodiscard]] bool yields(const YamlMapping& mapping, const NodeSection& section) const {
+    return mapping.line < place_.line && has_wildcard(section.node) && !has_wildcard(own_.node);
+  }
+
+  const std::vector<YamlMapping>& mappings_;
+  const YamlMapping& place_;
+  const NodeSection own_;
+  const WantedValues for_both_ = {{kOfBothWheels, 1.0}};
+  WantedValues all_;
+};
+
+Error rival_error(const Rival& rival, const std::string& where) {
+  const YamlValue& value = *rival.value;
+  const std::string shown = value.kind == YamlValue::Kind::collection ? "" : ": " + value.text;
+  return at_line(
+      where, value.line,
+      fmt::format("{}{} stands beside the parameters that change, and may apply to the same controller",
+                  value.key, shown),
+      value.key == kOfBothWheels
+          ? "remove it or make it 1.0: it would take the place of both wheels' multipliers"
+          : fmt::format("remove it, or make it {}", real_text(rival.wanted)));
+}
+
 /// YAML counts characters, an edit counts bytes.
 std::size_t byte_of(const std::string& text, std::size_t characters) {
   std::size_t at = 0;
@@ -220,7 +343,7 @@ class DiffDriveEditor {
     std::string missing;
     for (const auto& [key, number] : values) {
       const auto found = place_.of(key);
-      if (found.empty() && number != 1.0) missing += addition(key, number);
+      if (found.empty()) missing += addition(key, number);
       if (found.empty()) continue;
       if (found.size() > 1)
         return at_line(where_, found.back()->line,
@@ -276,6 +399,8 @@ Result<std::vector<TextEdit>> diff_drive_edits(const std::string& yaml,
   if (!mappings) return mappings.error();
   const auto place = place_in(mappings.value(), where);
   if (!place) return place.error();
+  if (const auto rival = RivalSearch(mappings.value(), *place.value(), values).first())
+    return rival_error(*rival, where);
   return DiffDriveEditor(yaml, *place.value(), where).edits(values);
 }
 

@@ -29,6 +29,9 @@ inline constexpr double kMostOdometer_km = 1e7;
 
 /// Bytes of a file that export changes. Chosen: a hundred times a large URDF; more is another kind of file.
 inline constexpr std::size_t kMostOwnFile_bytes = 16'000'000;
+/// Names of two nodes with their namespaces that are compared; longer ones are taken to be of one node.
+/// Chosen: far above those of robots.
+inline constexpr std::size_t kMostNamesOfNodes = 16;
 /// Cosine of the tilt up to which a lidar is level. Chosen: 15 degrees, as where a bag says how it is
 /// mounted.
 inline constexpr double kLevelLidar = 0.966;

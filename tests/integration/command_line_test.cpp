@@ -285,7 +285,9 @@ TEST_F(CommandLine, values_in_another_unit_are_refused_by_name_by_all_who_read_t
 }
 
 constexpr const char* kOwnFile = "a:\n  wheel_separation: 0.41  # m\n  wheel_radius: 0.075\n";
-constexpr const char* kOwnFileAfter = "a:\n  wheel_separation: 0.4  # m\n  wheel_radius: 0.075\n";
+constexpr const char* kOwnFileAfter =
+    "a:\n  wheel_separation: 0.4  # m\n  wheel_radius: 0.075\n  wheel_separation_multiplier: 1.0\n"
+    "  left_wheel_radius_multiplier: 1.0\n  right_wheel_radius_multiplier: 1.0\n";
 constexpr const char* kInto = "export cal.json --what diff_drive --into c.yaml";
 
 TEST_F(CommandLine, a_file_of_ones_own_is_changed_with_consent_alone) {

@@ -69,23 +69,76 @@ TEST(DiffDriveFile, keeps_how_a_number_is_written_that_is_right) {
   EXPECT_EQ(changed(yaml, {{"wheel_separation", 0.41}, {"wheel_radius", 0.0735}}), yaml);
 }
 
-TEST(DiffDriveFile, gets_the_multipliers_that_it_lacks_below_the_radius_unless_they_are_one) {
+TEST(DiffDriveFile, gets_all_multipliers_that_it_lacks_below_the_radius) {
   EXPECT_EQ(changed("base:\n  wheel_radius: 0.075  # m\n  wheel_separation: 0.4\n"),
-            "base:\n  wheel_radius: 0.0735  # m\n  left_wheel_radius_multiplier: 1.005\n"
+            "base:\n  wheel_radius: 0.0735  # m\n  wheel_separation_multiplier: 1.0\n"
+            "  left_wheel_radius_multiplier: 1.005\n"
             "  right_wheel_radius_multiplier: 0.995\n  wheel_separation: 0.41\n");
   EXPECT_EQ(changed("base: {wheel_separation: 0.4, wheel_radius: 0.075}"),
-            "base: {wheel_separation: 0.41, wheel_radius: 0.0735, left_wheel_radius_multiplier: 1.005, "
-            "right_wheel_radius_multiplier: 0.995}");
+            "base: {wheel_separation: 0.41, wheel_radius: 0.0735, wheel_separation_multiplier: 1.0, "
+            "left_wheel_radius_multiplier: 1.005, right_wheel_radius_multiplier: 0.995}");
   EXPECT_EQ(changed("wheel_separation: 0.4\r\nwheel_radius: 0.075\r\n"),
-            "wheel_separation: 0.41\r\nwheel_radius: 0.0735\r\nleft_wheel_radius_multiplier: 1.005\r\n"
-            "right_wheel_radius_multiplier: 0.995\r\n");
+            "wheel_separation: 0.41\r\nwheel_radius: 0.0735\r\nwheel_separation_multiplier: 1.0\r\n"
+            "left_wheel_radius_multiplier: 1.005\r\nright_wheel_radius_multiplier: 0.995\r\n");
   EXPECT_EQ(changed("wheel_separation: 0.4\nwheel_radius: 0.075"),
-            "wheel_separation: 0.41\nwheel_radius: 0.0735\nleft_wheel_radius_multiplier: 1.005\n"
-            "right_wheel_radius_multiplier: 0.995");
-  auto equal = kValues;
-  equal[3].second = equal[4].second = 1.0;
-  EXPECT_EQ(changed("wheel_separation: 0.4\nwheel_radius: 0.075\n", equal),
-            "wheel_separation: 0.41\nwheel_radius: 0.0735\n");
+            "wheel_separation: 0.41\nwheel_radius: 0.0735\nwheel_separation_multiplier: 1.0\n"
+            "left_wheel_radius_multiplier: 1.005\nright_wheel_radius_multiplier: 0.995");
+}
+
+/// Parameters of nodes of ROS 2, a line a section.
+std::string sections(const std::vector<std::pair<std::string, std::string>>& nodes) {
+  std::string yaml;
+  for (const auto& [node, parameters] : nodes) yaml += node + ":\n  ros__parameters: {" + parameters + "}\n";
+  return yaml;
+}
+
+constexpr const char* kLengths = "wheel_separation: 0.4, wheel_radius: 0.075";
+constexpr const char* kFactor = "wheel_separation_multiplier: 1.07";
+
+TEST(DiffDriveFile, whose_multipliers_another_section_may_give_is_refused_with_line_and_value) {
+  const std::string told =
+      "c.yaml:4: wheel_separation_multiplier: 1.07 stands beside the parameters that change, and may apply "
+      "to the same controller; remove it, or make it 1.0; nothing was written";
+  for (const char* node : {"/**", "/*", "/**/base", "/base", "base", "'*'"})
+    EXPECT_THAT(changed(sections({{"base", kLengths}, {node, kFactor}})), HasSubstr(told)) << node;
+  EXPECT_THAT(changed(sections({{"/**", kLengths}, {"base", kFactor}})), HasSubstr(told))
+      << "with wildcards nobody knows which nodes are meant";
+  EXPECT_THAT(changed(sections({{"base", kFactor}, {"/**", kLengths}})), HasSubstr("c.yaml:2: wheel_sep"));
+  EXPECT_THAT(changed(sections({{"base", kLengths}, {"/**", "wheel_radius: 0.08"}})),
+              HasSubstr("c.yaml:4: wheel_radius: 0.08"));
+  EXPECT_THAT(changed(sections({{"base", kLengths}, {"/**", "left_wheel_radius_multiplier: $(var l)"}})),
+              HasSubstr("$(var l)"));
+  EXPECT_THAT(
+      changed("base:\n  wheel_separation: 0.4\n  wheel_radius: 0.1\nbase:\n  " + std::string(kFactor)),
+      HasSubstr("c.yaml:5: "));
+  EXPECT_THAT(
+      changed("m: &m {" + std::string(kFactor) + "}\n" + sections({{"base", kLengths}, {"/**", "<<: *m"}})),
+      HasSubstr("c.yaml:1: wheel_separation_multiplier: 1.07"));
+}
+
+TEST(DiffDriveFile, has_its_own_values_over_those_of_a_section_with_wildcards_above) {
+  const std::string own =
+      "wheel_separation: 0.41, wheel_radius: 0.0735, wheel_separation_multiplier: 1.0, "
+      "left_wheel_radius_multiplier: 1.005, right_wheel_radius_multiplier: 0.995";
+  EXPECT_EQ(changed(sections({{"/**", kFactor}, {"base", kLengths}})),
+            sections({{"/**", kFactor}, {"base", own}}));
+  for (const char* node : {"other", "/robot2/base", "/robot2/*"})
+    EXPECT_EQ(changed(sections({{"base", kLengths}, {node, kFactor}})),
+              sections({{"base", own}, {node, kFactor}}))
+        << "of another node: " << node;
+  const char* same = "wheel_separation_multiplier: 1.00";
+  EXPECT_EQ(changed(sections({{"base", kLengths}, {"/**", same}})), sections({{"base", own}, {"/**", same}}));
+}
+
+TEST(DiffDriveFile, with_one_multiplier_for_both_wheels_is_refused_unless_it_is_one) {
+  const std::string yaml =
+      "base:\n  wheel_separation: 0.4\n  wheel_radius_multiplier: 1.03\n  wheel_radius: 0.1\n";
+  EXPECT_THAT(changed(yaml),
+              HasSubstr("c.yaml:3: wheel_radius_multiplier: 1.03 stands beside the parameters"));
+  EXPECT_THAT(changed(yaml), HasSubstr("remove it or make it 1.0"));
+  EXPECT_EQ(changed(replaced(yaml, "1.03", "1.0")).find("ERROR"), std::string::npos);
+  EXPECT_THAT(changed(sections({{"/**", "wheel_radius_multiplier: 1.03"}, {"base", kLengths}})),
+              HasSubstr("c.yaml:2: wheel_radius_multiplier: 1.03"));
 }
 
 TEST(DiffDriveFile, without_one_place_is_refused_with_the_lines) {
