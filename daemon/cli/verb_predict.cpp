@@ -21,6 +21,7 @@
 #include "proto/calibration/discarded_json.hpp"
 #include "proto/file_bytes.hpp"
 #include "proto/recording/left_out.hpp"
+#include "proto/visible_text.hpp"
 
 namespace odomcalib::cli {
 namespace {
@@ -46,6 +47,23 @@ Result<Calibration> chosen_calibration(const PredictOptions& options, const Robo
   if (const auto needed = dimensions_of(calibration.value(), options.calibration); !needed)
     return needed.error();
   return calibration;
+}
+
+/// Lengths of another robot lead elsewhere, and nothing in the trajectory shows it.
+Result<void> check_robot(const Calibration& calibration, const Recording& recording,
+                         const PredictOptions& options) {
+  const std::string &theirs = calibration.robot.robot_id, &ours = recording.robot.robot_id;
+  if (options.calibration == "nominal" || theirs == ours) return {};
+  if (!theirs.empty() && !ours.empty())
+    return Error{ErrorCode::usage,
+                 fmt::format(R"(is of robot "{}", but "{}" of "{}")", theirs, options.recording, ours),
+                 options.calibration,
+                 fmt::format("name a calibration of that robot; if only the name changed: --robot-id {}",
+                             shell_word(theirs))};
+  warn(fmt::format(R"({} is of robot "{}", but {} names none: whether they are of one robot cannot be told)",
+                   ours.empty() ? options.calibration : options.recording, ours.empty() ? theirs : ours,
+                   ours.empty() ? options.recording : options.calibration));
+  return {};
 }
 
 // Facts that a reader of the trajectory must know, and would not see from it.
@@ -85,6 +103,7 @@ Result<Predicted> predicted(const PredictOptions& options) {
                  "dead reckoning needs encoder counts, or wheel angles, speeds or odometry"};
   const auto calibration = chosen_calibration(options, recording.robot);
   if (!calibration) return calibration.error();
+  if (const auto same = check_robot(calibration.value(), recording, options); !same) return same.error();
   warn_of(calibration.value(), options.calibration);
   warn_of_lost_motion(recording);
   auto path = options.live ? calib::odometry::predict_live(recording, calibration.value())

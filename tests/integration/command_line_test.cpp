@@ -262,6 +262,29 @@ TEST_F(CommandLine, values_that_are_no_numbers_are_refused_by_name_where_they_ar
   EXPECT_FALSE(exists("out"));
 }
 
+TEST_F(CommandLine, a_calibration_of_another_robot_predicts_nothing) {
+  auto of_robot = calibration();
+  of_robot.robot.robot_id = "r1";
+  save("r1.json", of_robot);
+  const std::string call = "predict drive.jsonl --calibration r1.json --trajectory out";
+  const auto unnamed = ctl(call);
+  EXPECT_EQ(unnamed.status, 0) << unnamed.err;
+  EXPECT_THAT(unnamed.err, HasSubstr("r1.json is of robot \"r1\", but drive.jsonl names none"));
+  fs::remove(folder_ / "out");
+  const auto other = ctl(call + " --robot-id r2");
+  EXPECT_EQ(other.status, 2) << other.err;
+  EXPECT_THAT(other.err,
+              AllOf(HasSubstr("r1.json"), HasSubstr("is of robot \"r1\", but \"drive.jsonl\" of \"r2\""),
+                    HasSubstr("--robot-id r1")));
+  EXPECT_FALSE(exists("out"));
+  const auto same = ctl(call + " --robot-id r1");
+  EXPECT_EQ(same.status, 0);
+  EXPECT_EQ(same.err, "");
+  EXPECT_THAT(ctl("predict drive.jsonl --calibration cal.json --trajectory out --robot-id r2").err,
+              HasSubstr("drive.jsonl is of robot \"r2\", but cal.json names none"));
+  EXPECT_EQ(ctl("predict drive.jsonl --calibration nominal --trajectory out --robot-id r2").err, "");
+}
+
 TEST_F(CommandLine, values_in_another_unit_are_refused_by_name_by_all_who_read_them) {
   auto in_mm = calibration();
   in_mm.parameters.back().second = {400.0, 0.1, "mm"};
