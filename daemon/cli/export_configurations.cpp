@@ -202,6 +202,23 @@ Result<std::string> configuration_text(const Calibration& calibration, const Dim
                "see odomcalibctl export --help"};
 }
 
+/// Noise is what is left once odometry has its effects.
+std::vector<std::string> assumed_of_odometry(const Calibration& calibration) {
+  std::vector<std::string> names;
+  for (const auto& placement : calib::odometry::effect_placements(calibration))
+    if (placement.place == calib::odometry::Place::odometry &&
+        std::find(names.begin(), names.end(), placement.effect) == names.end())
+      names.push_back(placement.effect);
+  for (const std::string& name : calib::odometry::unknown_effects(calibration)) names.push_back(name);
+  if (names.empty()) return {};
+  std::vector<std::string> sentences{fmt::format(
+      "this is the noise of odometry that is corrected for its effects ({}), which are not held here",
+      fmt::join(names, ", "))};
+  if (std::string lost = lost_without_effects(calibration, false); !lost.empty())
+    sentences.push_back(std::move(lost));
+  return sentences;
+}
+
 }  // namespace
 
 const std::vector<std::string>& configurations() {
@@ -231,9 +248,10 @@ std::string lost_without_effects(const Calibration& calibration, bool is_step) {
 }
 
 std::vector<std::string> not_held(const Calibration& calibration, const std::string& what) {
-  std::vector<std::string> sentences;
   // How far odometry errs is no odometry.
-  if (what == "amcl" || what == "robot_localization" || what == "slam_toolbox") return sentences;
+  if (what == "amcl" || what == "robot_localization" || what == "slam_toolbox")
+    return assumed_of_odometry(calibration);
+  std::vector<std::string> sentences;
   const bool is_step = what == "c_header" || what == "python";
   for (const auto& placement : calib::odometry::effect_placements(calibration)) {
     using calib::odometry::Place;

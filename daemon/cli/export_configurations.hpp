@@ -16,7 +16,8 @@ bool is_configuration(const std::string& what);
 const std::vector<std::string>& configurations();
 
 /// Parts of this calibration that odometry, or a comparison of it with the lidar, would need and the format
-/// has no room for: a sentence each. The text of the format has them as comments.
+/// has no room for: a sentence each. The text of the format has them as comments. Of noise: what it assumes
+/// that odometry is corrected for.
 std::vector<std::string> not_held(const Calibration& calibration, const std::string& what);
 
 /// Error of odometry without its effects (degrees a turn, mm a metre, where the recording shows them), and

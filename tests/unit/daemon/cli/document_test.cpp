@@ -7,6 +7,7 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
+#include "calib/odometry/uncertainty.hpp"
 #include "daemon/cli/answer_documents.hpp"
 #include "daemon/cli/calibration_document.hpp"
 #include "daemon/cli/export_configurations.hpp"
@@ -382,6 +383,22 @@ TEST(Export, of_lengths_alone_says_what_odometry_then_errs_by) {
       << "it has them";
   calibration.effects.resize(1);
   EXPECT_THAT(exported(calibration, "diff_drive").value(), Not(HasSubstr("without these effects")));
+}
+
+TEST(Export, of_noise_says_that_odometry_is_taken_to_be_corrected_for_its_effects) {
+  Calibration calibration = for_export();
+  calibration.contact_noise = calib::odometry::entry_of({0.002, 0.0, 0.01});
+  for (const char* what : {"amcl", "robot_localization", "slam_toolbox"}) {
+    const std::string text = value_of(exported(calibration, what));
+    EXPECT_THAT(text, HasSubstr("# this is the noise of odometry that is corrected for its effects "
+                                "(wheel_eccentricity), which are not held here\n"))
+        << what;
+    EXPECT_THAT(text, HasSubstr("libodomcalib applies them")) << what;
+    EXPECT_THAT(text, Not(HasSubstr("time_offset"))) << "of the lidar's clock";
+    EXPECT_EQ(not_held(calibration, what).size(), 2U) << "for standard error, too";
+  }
+  calibration.effects.clear();
+  EXPECT_THAT(value_of(exported(calibration, "amcl")), Not(HasSubstr("corrected for")));
 }
 
 TEST(Report, says_what_is_lost_where_the_robot_runs_ros2) {
