@@ -18,6 +18,15 @@ constexpr const char* kRemedy = "solve the recording again";
 constexpr std::array<double Dimensions::*, kDriveLengths.size()> kDimensionMembers = {
     &Dimensions::left, &Dimensions::right, &Dimensions::track};
 
+Error no_finite_value(const std::string& member, const std::string& where) {
+  return {ErrorCode::format, "\"" + member + "\" has no finite value", where, kRemedy};
+}
+
+Error no_length(BaseQuantity length, const std::string& where) {
+  return {ErrorCode::format, std::string("\"parameters.") + name_of(length) + "\" is no length above 0",
+          where, kRemedy};
+}
+
 }  // namespace
 
 Result<Calibration> read_plausible_calibration(const std::string& path) {
@@ -30,8 +39,17 @@ Result<Calibration> read_plausible_calibration(const std::string& path) {
 Result<Calibration> read_finite_calibration(const std::string& path) {
   auto calibration = read_plausible_calibration(path);
   if (!calibration) return calibration;
-  if (const auto member = non_finite_value(calibration.value()))
-    return Error{ErrorCode::format, "\"" + *member + "\" has no finite value", path, kRemedy};
+  if (const auto member = non_finite_value(calibration.value())) return no_finite_value(*member, path);
+  return calibration;
+}
+
+Result<Calibration> read_sound_calibration(const std::string& path) {
+  auto calibration = read_plausible_calibration(path);
+  if (!calibration || calibration.value().verdict == Verdict::refused) return calibration;
+  if (const auto member = non_finite_value(calibration.value())) return no_finite_value(*member, path);
+  for (const BaseQuantity length : kDriveLengths)
+    if (const auto stated = calibration.value().parameter(length); stated && !(*stated > 0.0))
+      return no_length(length, path);
   return calibration;
 }
 
@@ -41,10 +59,7 @@ Result<Dimensions> dimensions_of(const Calibration& calibration, const std::stri
     const BaseQuantity length = kDriveLengths[k];
     const auto stated = calibration.parameter(length);
     if (!stated && calibration.verdict == Verdict::refused) return refusal_of(calibration, where);
-    if (!stated || !(*stated > 0.0))
-      return Error{ErrorCode::format,
-                   std::string("\"parameters.") + name_of(length) + "\" is no length above 0", where,
-                   kRemedy};
+    if (!stated || !(*stated > 0.0)) return no_length(length, where);
     out.*kDimensionMembers[k] = *stated;
   }
   return out;

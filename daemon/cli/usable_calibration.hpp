@@ -11,6 +11,9 @@ namespace odomcalib::cli {
 
 /// A calibration whose values are what their units say (wrong_value). Error: io, format, refused.
 Result<Calibration> read_plausible_calibration(const std::string& path);
+/// The same of one to be shown: without a value that is no number, and without a length that is none, unless
+/// it was refused and says so.
+Result<Calibration> read_sound_calibration(const std::string& path);
 /// The same of one whose values are all finite.
 Result<Calibration> read_finite_calibration(const std::string& path);
 

@@ -65,7 +65,7 @@ int show_report(const ReportOptions& options, const Session& session) {
           {{"the calibration", options.calibration}, {"the history", options.history}});
       !files)
     return report_error(files.error(), session.json);
-  const auto calibration = read_plausible_calibration(options.calibration);
+  const auto calibration = read_sound_calibration(options.calibration);
   if (!calibration) return report_error(calibration.error(), session.json);
   const auto write_backs = written_sections(calibration.value(), options, session);
   if (!write_backs) return report_error(write_backs.error(), session.json);

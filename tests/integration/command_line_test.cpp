@@ -262,6 +262,34 @@ TEST_F(CommandLine, values_that_are_no_numbers_are_refused_by_name_where_they_ar
   EXPECT_FALSE(exists("out"));
 }
 
+TEST_F(CommandLine, a_damaged_length_is_refused_by_name_by_all_who_read_it) {
+  auto negative = calibration(), none = calibration();
+  for (auto& [name, quantity] : negative.parameters)
+    if (name == "left_wheel_diameter") quantity.value = -quantity.value;
+  none.parameters.back().second.value = std::nan("");
+  save("negative.json", negative);
+  save("none.json", none);
+  for (const auto& [file, member] :
+       {std::pair("negative.json", "\"parameters.left_wheel_diameter\" is no length"),
+        std::pair("none.json", "\"parameters.track_width\" has no finite value")}) {
+    const std::string name = file;
+    for (const std::string& call :
+         {"predict drive.jsonl --calibration " + name + " --trajectory out", "report " + name,
+          "report " + name + " --json", "report " + name + " --html page.html",
+          "export " + name + " --what toml"}) {
+      const auto got = ctl(call);
+      EXPECT_EQ(got.status, 1) << call << got.out;
+      EXPECT_THAT(got.err, AllOf(HasSubstr(name), HasSubstr(member))) << call;
+      EXPECT_THAT(got.out, Not(HasSubstr("ACCEPTED"))) << call;
+    }
+  }
+  EXPECT_FALSE(exists("page.html"));
+  none.verdict = Verdict::refused;
+  none.reasons = {"nothing moved"};
+  save("none.json", none);
+  EXPECT_EQ(ctl("report none.json").status, 0) << "a refused one may have no values, and is shown";
+}
+
 TEST_F(CommandLine, a_calibration_of_another_robot_predicts_nothing) {
   auto of_robot = calibration();
   of_robot.robot.robot_id = "r1";
