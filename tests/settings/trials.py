@@ -290,8 +290,8 @@ TRIALS = {
     "one_encoder_twice": Trial(SHORT, counted(lambda left, right: (left, left))),
     "counts_per_sample": Trial(SHORT, per_sample),
     # Other commands.
-    "predict": Trial(SHORT, command="predict {file} --calibration {calibration of gear_play} --trajectory result"),
-    "predict_live": Trial(SHORT, command="predict {file} --calibration {calibration of gear_play} --live --trajectory result"),
+    "predict": Trial(SHORT, command="predict {file} --robot-id simulated-5104 --calibration {calibration of gear_play} --trajectory result"),
+    "predict_live": Trial(SHORT, command="predict {file} --robot-id simulated-5104 --calibration {calibration of gear_play} --live --trajectory result"),
     "compare": Trial("--room furnished --drive random --seed 5100 --beams 120", command="compare {calibration of furnished} {calibration} --csv result"),
     "match": Trial(SHORT, pair_of_scans(0, 60, [0.3, 0.2, 0.3]), "match {file}"),
     "match_near": Trial(SHORT, pair_of_scans(0, 1, [0.0, 0.0, 0.0]), "match {file}"),
