@@ -51,8 +51,9 @@ void adjust(std::vector<double*> p_values) {
 }
 
 void adjust(std::vector<Change>& changes) {
-  std::vector<double*> p_values;
-  for (Change& change : changes) p_values.push_back(&change.p_value);
+  std::vector<double*> p_values(changes.size());
+  std::transform(changes.begin(), changes.end(), p_values.begin(),
+                 [](Change& change) { return &change.p_value; });
   adjust(std::move(p_values));
 }
 

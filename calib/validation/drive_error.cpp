@@ -258,8 +258,9 @@ std::vector<DriveError> drive_errors(std::span<const measurement::FitData> data,
                                      const wheels::BaseParameters& nominal, const JudgedModel* geometry,
                                      const JudgedModel& full) {
   const Judge judge(data, nominal, geometry, full);
-  std::vector<std::vector<EvaluationWindow>> windows;
-  for (const WindowKind kind : kKinds) windows.push_back(judge.windows(kind));
+  std::vector<std::vector<EvaluationWindow>> windows(kKinds.size());
+  std::transform(kKinds.begin(), kKinds.end(), windows.begin(),
+                 [&](WindowKind kind) { return judge.windows(kind); });
   const std::vector<Judged> judged = judge.judged(windows);
   std::vector<DriveError> errors;
   for (const Figure& figure : kFigures)
@@ -271,8 +272,9 @@ std::vector<ErrorGrowth> error_growth(std::span<const measurement::FitData> data
                                       const wheels::BaseParameters& nominal, const JudgedModel* geometry,
                                       const JudgedModel& full) {
   const Judge judge(data, nominal, geometry, full);
-  std::vector<std::vector<EvaluationWindow>> windows;
-  for (const double way : settings::kWays_m) windows.push_back(judge.windows_of_way(way));
+  std::vector<std::vector<EvaluationWindow>> windows(settings::kWays_m.size());
+  std::transform(settings::kWays_m.begin(), settings::kWays_m.end(), windows.begin(),
+                 [&](double way) { return judge.windows_of_way(way); });
   std::vector<ErrorGrowth> growth;
   for (const Judged& judged : judge.judged(windows))
     if (judged.is_enough()) growth.push_back(growth_over(judged));

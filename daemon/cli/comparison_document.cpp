@@ -163,8 +163,8 @@ std::string lone_text(const LoneEffect& effect) {
 std::string effects_text(const Difference& difference) {
   std::string text;
   const auto add = [&text](const char* what, const std::vector<LoneEffect>& effects) {
-    std::vector<std::string> names;
-    for (const LoneEffect& effect : effects) names.push_back(lone_text(effect));
+    std::vector<std::string> names(effects.size());
+    std::transform(effects.begin(), effects.end(), names.begin(), lone_text);
     if (names.empty()) return;
     text += (text.empty() ? "" : "; ") + std::string(what) + fmt::format("{}", fmt::join(names, ", "));
   };

@@ -88,7 +88,8 @@ TEST(DiffDriveFile, gets_all_multipliers_that_it_lacks_below_the_radius) {
 /// Parameters of nodes of ROS 2, a line a section.
 std::string sections(const std::vector<std::pair<std::string, std::string>>& nodes) {
   std::string yaml;
-  for (const auto& [node, parameters] : nodes) yaml += node + ":\n  ros__parameters: {" + parameters + "}\n";
+  for (const auto& [node, parameters] : nodes)
+    yaml.append(node).append(":\n  ros__parameters: {").append(parameters).append("}\n");
   return yaml;
 }
 
