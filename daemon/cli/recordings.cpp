@@ -21,12 +21,14 @@ namespace {
 template <typename Sample, typename Same>
 bool all_among(const std::vector<Sample>& one, const std::vector<Sample>& other, double later, Same same) {
   auto from = other.begin();
-  return !one.empty() && std::all_of(one.begin(), one.end(), [&](const Sample& x) {
+  for (const Sample& x : one) {
     from = std::find_if(from, other.end(), [&](const Sample& y) {
       return std::abs(y.t - x.t + later) < settings::kSameTime_s && same(x, y);
     });
-    return from != other.end() && from++ != other.end();
-  });
+    if (from == other.end()) return false;
+    ++from;
+  }
+  return !one.empty();
 }
 
 /// The same counts, scans or reference poses at the same times.
