@@ -101,8 +101,9 @@ inline std::optional<double> nominal_value(const RobotDescription& robot, BaseQu
   if (const auto member = member_of(quantity))
     return robot.*member > 0.0 ? std::optional(robot.*member) : std::nullopt;
   if (!robot.lidar_pose) return std::nullopt;
-  return (*robot.lidar_pose)[static_cast<std::size_t>(quantity) -
-                             static_cast<std::size_t>(BaseQuantity::lidar_x)];
+  const auto& [x, y, yaw] = *robot.lidar_pose;
+  if (quantity == BaseQuantity::lidar_x) return x;
+  return quantity == BaseQuantity::lidar_y ? y : yaw;
 }
 
 }  // namespace odomcalib
