@@ -55,18 +55,9 @@ std::optional<Recording> without_dead_counts(const Recording& recording) {
   std::optional<Recording> mended;
   for (const Wheel& wheel : kWheels) {
     const Recording& given = mended ? *mended : recording;
-    const std::vector<bool> dead = dead_counts(given.ticks, wheel, most);
-    if (std::find(dead.begin(), dead.end(), true) == dead.end()) continue;
-    Discarded lost{name_of(motion_of(given)), wheel.reason, 0, given.ticks.size()};
-    Recording next = given;
-    next.ticks.clear();
-    for (std::size_t k = 0; k < dead.size(); ++k)
-      if (dead[k])
-        count_one(lost, given.ticks[k].t);
-      else
-        next.ticks.push_back(given.ticks[k]);
-    next.discarded.push_back(lost);
-    mended = std::move(next);
+    const Discarded lost{name_of(motion_of(given)), wheel.reason};
+    if (auto next = without_marked(given, &Recording::ticks, lost, dead_counts(given.ticks, wheel, most)))
+      mended = std::move(next);
   }
   return mended;
 }

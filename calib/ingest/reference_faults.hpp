@@ -2,8 +2,11 @@
 // put_right.hpp.
 #pragma once
 
+#include <algorithm>
 #include <optional>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "calib/math/se2.hpp"
 #include "proto/recording/recording.hpp"
@@ -11,6 +14,26 @@
 namespace odomcalib::calib::ingest {
 
 inline constexpr double kWholeTurn = 2.0 * math::kPi;  ///< rad
+
+/// Without the samples that are marked, which are listed as discarded; nothing where none is.
+/// @param lost what and why; its numbers are counted here
+template <typename Sample>
+std::optional<Recording> without_marked(const Recording& recording, std::vector<Sample> Recording::*stream,
+                                        Discarded lost, const std::vector<bool>& marked) {
+  if (std::find(marked.begin(), marked.end(), true) == marked.end()) return std::nullopt;
+  const std::vector<Sample>& samples = recording.*stream;
+  lost.of = samples.size();
+  Recording rest = recording;
+  (rest.*stream).clear();
+  for (std::size_t k = 0; k < marked.size(); ++k) {
+    if (marked[k])
+      count_one(lost, samples[k].t);
+    else
+      (rest.*stream).push_back(samples[k]);
+  }
+  rest.discarded.push_back(std::move(lost));
+  return rest;
+}
 
 /// Scans of one sensor only, where there are several; nothing where there is one.
 /// @param sensor the one; empty: that with most scans

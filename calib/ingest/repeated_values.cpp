@@ -99,37 +99,17 @@ std::vector<bool> repeated_poses(const Recording& recording) {
   return repeats;
 }
 
-template <typename Sample>
-std::optional<Recording> without(const Recording& recording, std::vector<Sample> Recording::*stream,
-                                 const char* what, const std::vector<bool>& repeats) {
-  const std::vector<Sample>& samples = recording.*stream;
-  Discarded dropped{what, kRepeatedValues, 0, samples.size()};
-  Recording once = recording;
-  (once.*stream).clear();
-  for (std::size_t k = 0; k < repeats.size(); ++k) {
-    if (!repeats[k]) {
-      (once.*stream).push_back(samples[k]);
-      continue;
-    }
-    count_one(dropped, samples[k].t);
-  }
-  if (dropped.count == 0) return std::nullopt;
-  once.discarded.push_back(dropped);
-  return once;
-}
-
 }  // namespace
 
 std::optional<Recording> without_repeated_scans(const Recording& recording) {
   const std::vector<bool> repeats = repeats_of(recording.scans);
   if (!repeats_in_motion(recording, repeats)) return std::nullopt;
-  return without(recording, &Recording::scans, "scan", repeats);
+  return without_marked(recording, &Recording::scans, {"scan", kRepeatedValues}, repeats);
 }
 
 std::optional<Recording> without_repeated_poses(const Recording& recording) {
   const std::vector<bool> repeats = repeated_poses(recording);
-  if (std::find(repeats.begin(), repeats.end(), true) == repeats.end()) return std::nullopt;
-  return without(recording, &Recording::poses, "pose", repeats);
+  return without_marked(recording, &Recording::poses, {"pose", kRepeatedValues}, repeats);
 }
 
 }  // namespace odomcalib::calib::ingest
